@@ -1,0 +1,118 @@
+"""Who annotates what: workers, batches, and the leases that join them."""
+
+from __future__ import annotations
+
+import secrets
+
+from django.db import models
+from django.db.models import Q
+from django.utils import timezone
+
+from gtm_hit.models.annotation import Layer
+from gtm_hit.models.dataset import Dataset, Frame
+
+
+def pseudonym() -> str:
+    return "w-" + secrets.token_hex(5)
+
+
+def completion_code() -> str:
+    """20 characters, 100 bits, without letters that are misread."""
+    return "".join(secrets.choice("ABCDEFGHJKLMNPQRSTUVWXYZ23456789") for _ in range(20))
+
+
+def nonce() -> str:
+    """Part of an assignment's token; changing it revokes every link handed out."""
+    return secrets.token_hex(16)
+
+
+class Worker(models.Model):
+    """Whoever annotates; the platform's own id is opaque and never leaves the server."""
+
+    platform = models.SlugField(max_length=40, default="link")
+    external_id = models.CharField(max_length=255)
+    pseudonym = models.CharField(max_length=20, unique=True, default=pseudonym, editable=False)
+    tutorial_done_at = models.DateTimeField(null=True, blank=True)
+    created_at = models.DateTimeField(auto_now_add=True)
+
+    class Meta:
+        ordering = ["-created_at"]
+        constraints = [
+            models.UniqueConstraint(fields=["platform", "external_id"], name="worker_once_per_platform"),
+            models.CheckConstraint(condition=~Q(external_id=""), name="worker_has_external_id"),
+        ]
+
+    def __str__(self) -> str:
+        return self.pseudonym
+
+
+class Batch(models.Model):
+    """Consecutive frames to be annotated together. Several copies give several opinions."""
+
+    dataset = models.ForeignKey(Dataset, on_delete=models.CASCADE, related_name="batches")
+    number = models.PositiveIntegerField(help_text="position along the dataset, from 1")
+    copy = models.PositiveSmallIntegerField(default=1, help_text="the n-th independent annotation")
+    frames = models.ManyToManyField(Frame, related_name="batches")
+    created_at = models.DateTimeField(auto_now_add=True)
+
+    class Meta:
+        ordering = ["dataset", "copy", "number"]
+        verbose_name_plural = "batches"
+        constraints = [
+            models.UniqueConstraint(fields=["dataset", "number", "copy"], name="batch_number_once"),
+        ]
+
+    def __str__(self) -> str:
+        return f"{self.dataset} batch {self.number}" + (f"/{self.copy}" if self.copy > 1 else "")
+
+
+class Assignment(models.Model):
+    """One batch leased to one worker; owns one layer."""
+
+    class State(models.TextChoices):
+        LEASED = "leased", "being annotated"
+        EXPIRED = "expired", "expired"
+        SUBMITTED = "submitted", "submitted"
+        ACCEPTED = "accepted", "accepted"
+        RETURNED = "returned", "returned with comments"
+        REJECTED = "rejected", "rejected"
+
+    # States in which nobody else may have the batch.
+    HOLDING = [State.LEASED, State.SUBMITTED, State.ACCEPTED, State.RETURNED]
+    EDITABLE = [State.LEASED, State.RETURNED]
+
+    batch = models.ForeignKey(Batch, on_delete=models.PROTECT, related_name="assignments")
+    worker = models.ForeignKey(Worker, on_delete=models.PROTECT, related_name="assignments")
+    layer = models.OneToOneField(Layer, on_delete=models.PROTECT, related_name="assignment")
+    state = models.CharField(max_length=12, choices=State.choices, default=State.LEASED)
+    nonce = models.CharField(max_length=32, default=nonce, editable=False)
+    leased_at = models.DateTimeField(default=timezone.now)
+    expires_at = models.DateTimeField()
+    submitted_at = models.DateTimeField(null=True, blank=True)
+    code = models.CharField(max_length=20, unique=True, null=True, blank=True, editable=False)
+
+    class Meta:
+        ordering = ["-leased_at"]
+        constraints = [
+            models.UniqueConstraint(
+                fields=["batch"],
+                condition=Q(state__in=["leased", "submitted", "accepted", "returned"]),
+                name="batch_held_by_one",
+            ),
+            models.UniqueConstraint(
+                fields=["worker"], condition=Q(state="leased"), name="worker_leases_one_batch"
+            ),
+            models.CheckConstraint(
+                condition=Q(state__in=["leased", "expired"]) | Q(submitted_at__isnull=False),
+                name="submitted_has_time",
+            ),
+        ]
+
+    def __str__(self) -> str:
+        return f"{self.batch} by {self.worker}"
+
+    @property
+    def editable(self) -> bool:
+        return self.state in self.EDITABLE and (
+            self.state == self.State.RETURNED or self.expires_at > timezone.now()
+        )

@@ -1,0 +1,13 @@
+"""The product's settings, with a key and a data folder of the tests' own."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+
+os.environ.setdefault("SECRET_KEY", "tests-" + "k" * 40)
+os.environ.setdefault("DATA_DIR", tempfile.mkdtemp(prefix="gtm-tests-"))
+
+from annotator.settings import *  # noqa: E402, F403
+
+PASSWORD_HASHERS = ["django.contrib.auth.hashers.MD5PasswordHasher"]
