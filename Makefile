@@ -1,0 +1,58 @@
+# `make run` and `make test` do everything on a fresh Debian machine; `make help` lists the rest.
+PORT ?= 8000
+HOST ?= 127.0.0.1
+PYTHON ?= python3
+BIN := .venv/bin
+ENVIRONMENT := .venv/.runtime
+DEV_ENVIRONMENT := .venv/.development
+# Commands that only look at the code need settings, but no secrets and no data.
+CHECK := SECRET_KEY=checks-only-0123456789-0123456789-0123456789 DATA_DIR=$(CURDIR)/var/check
+
+.DEFAULT_GOAL := help
+.PHONY: help run test test-fast lint format types migrations-check static-check check benchmarks clean
+
+help: ## list what make can do
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 26
+
+run: $(ENVIRONMENT) ## start everything on this machine: demo scene, web server, worker (PORT=8123 for another port)
+	@exec $(BIN)/python -m annotator.local --host $(HOST) --port $(PORT)
+
+test: $(DEV_ENVIRONMENT) ## run all tests; installs the Debian packages they need (chromium, postgresql, redis-server)
+	@scripts/install-debian-packages chromium postgresql redis-server fonts-dejavu-core
+	$(BIN)/pytest -n 2 --dist loadgroup
+
+test-fast: $(DEV_ENVIRONMENT) ## the tests that need neither a browser nor services
+	$(BIN)/pytest -n 2 -m "not browser and not services"
+
+lint: $(DEV_ENVIRONMENT) ## ruff: rules and format
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+format: $(DEV_ENVIRONMENT) ## let ruff repair and format
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+types: $(DEV_ENVIRONMENT) ## mypy
+	$(BIN)/mypy annotator gtm_hit
+
+migrations-check: $(DEV_ENVIRONMENT) ## models and migrations tell the same story
+	$(CHECK) $(BIN)/python manage.py makemigrations --check --dry-run
+
+static-check: $(DEV_ENVIRONMENT) ## every module import and asset resolves under its hashed name
+	$(CHECK) $(BIN)/python manage.py collectstatic --noinput --verbosity 0
+
+check: lint types migrations-check static-check ## everything .ci/run does before the tests
+
+benchmarks: $(DEV_ENVIRONMENT) ## print the figures of the README's performance table
+	@for file in benchmarks/*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
+
+clean: ## remove the environment and caches; data in var/ stay
+	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis
+
+$(ENVIRONMENT): requirements.txt
+	@scripts/make-environment $(PYTHON) requirements.txt
+	@touch $@
+
+$(DEV_ENVIRONMENT): requirements.txt requirements-dev.txt
+	@scripts/make-environment $(PYTHON) requirements-dev.txt
+	@touch $(ENVIRONMENT) $@
