@@ -9,7 +9,7 @@ from django.core.exceptions import ImproperlyConfigured
 
 
 def text(name: str, default: str | None = None) -> str:
-    value = os.environ.get(name, default)
+    value = os.environ.get(name, "") or default
     if value is None:
         raise ImproperlyConfigured(f"{name} must be set (see .env.example)")
     return value
@@ -39,8 +39,22 @@ def integer(name: str, default: int, *, minimum: int, maximum: int) -> int:
     return number
 
 
+def one_of(name: str, default: str, choices: tuple[str, ...]) -> str:
+    value = os.environ.get(name, "") or default
+    if value not in choices:
+        raise ImproperlyConfigured(f"{name} must be one of {', '.join(choices)}; got {value!r}")
+    return value
+
+
+def starting_with(name: str, default: str, prefixes: tuple[str, ...]) -> str:
+    value = os.environ.get(name, "") or default
+    if not value.startswith(prefixes):
+        raise ImproperlyConfigured(f"{name} must start with one of {', '.join(prefixes)}; got {value!r}")
+    return value
+
+
 def words(name: str, default: str) -> list[str]:
-    return [word for word in os.environ.get(name, default).replace(",", " ").split() if word]
+    return [word for word in (os.environ.get(name, "") or default).replace(",", " ").split() if word]
 
 
 def database(name: str, default: str) -> dict[str, object]:

@@ -15,9 +15,10 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
+from typing import NoReturn
 
 STAFF_NAME = "staff"
 GRACE_SECONDS = 10
@@ -38,11 +39,17 @@ def main() -> int:
     os.environ.setdefault("SECRET_KEY", kept_secret(data / "secret-key", 64))
     prepare()
     password = staff_password(data / "staff-password")
-    with running(web_command(options.host, options.port), worker_command(data)) as processes:
-        if not wait_until_answering(options.host, options.port, processes[0]):
-            return 1
-        welcome(options.host, options.port, password)
-        return wait_for_signal(processes)
+    # A closed terminal or a service manager ends it as Ctrl-C does.
+    signal.signal(signal.SIGTERM, interrupt)
+    signal.signal(signal.SIGHUP, interrupt)
+    try:
+        with running(web_command(options.host, options.port), worker_command(data)) as processes:
+            if not wait_until_answering(options.host, options.port, processes[0]):
+                return 1
+            welcome(options.host, options.port, password)
+            return wait(processes)
+    except KeyboardInterrupt:
+        return 0
 
 
 def port_problem(host: str, port: int) -> str | None:
@@ -118,14 +125,15 @@ def running(*commands: list[str]) -> Iterator[list[subprocess.Popen[bytes]]]:
             processes.append(subprocess.Popen(command, start_new_session=True))
         yield processes
     finally:
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, signal.SIG_IGN)  # a second Ctrl-C must not leave a process behind
+        print("\nStopping …", flush=True)
         for process in processes:
             send(process, signal.SIGTERM)
         deadline = time.monotonic() + GRACE_SECONDS
         for process in processes:
-            try:
+            with suppress(subprocess.TimeoutExpired):
                 process.wait(max(0.1, deadline - time.monotonic()))
-            except subprocess.TimeoutExpired:
-                pass
             # The leader may be gone while a child of it still runs.
             send(process, signal.SIGKILL)
 
@@ -162,24 +170,18 @@ def welcome(host: str, port: int, password: str | None) -> None:
     print("\nCtrl-C stops everything; data stay in", settings.DATA_DIR, "\n", flush=True)
 
 
-def wait_for_signal(processes: list[subprocess.Popen[bytes]]) -> int:
-    """Wait for Ctrl-C or a termination signal; a server that dies by itself ends the wait too."""
-    stopped: list[int] = []
-
-    def stop(number: int, _frame: FrameType | None) -> None:
-        stopped.append(number)
-
-    signal.signal(signal.SIGINT, stop)
-    signal.signal(signal.SIGTERM, stop)
-    signal.signal(signal.SIGHUP, stop)
-    while not stopped:
+def wait(processes: list[subprocess.Popen[bytes]]) -> int:
+    """Wait for an interruption; a server that dies by itself ends the wait too."""
+    while True:
         for process in processes:
             if process.poll() is not None:
                 print(f"{process.args!r} ended with {process.returncode}; stopping.", file=sys.stderr)
                 return 1
         time.sleep(0.2)
-    print("\nStopping …", flush=True)
-    return 0
+
+
+def interrupt(_number: int, _frame: FrameType | None) -> NoReturn:
+    raise KeyboardInterrupt
 
 
 if __name__ == "__main__":

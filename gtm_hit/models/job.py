@@ -1,4 +1,4 @@
-"""Long work, as a row that says how far it is. The row is the truth; a broker's message only wakes somebody."""
+"""Long work, as a row that says how far it is. The row is the truth; a message only wakes somebody."""
 
 from __future__ import annotations
 
