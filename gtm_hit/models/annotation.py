@@ -29,6 +29,9 @@ class Layer(models.Model):
     name = models.CharField(max_length=120, validators=[name_validator])
     kind = models.CharField(max_length=20, choices=Kind.choices)
     hidden = models.BooleanField(default=False, help_text="never shown to workers (known truth, gold)")
+    last_person = models.PositiveIntegerField(
+        default=0, editable=False, help_text="largest person number any save has used"
+    )
     created_at = models.DateTimeField(auto_now_add=True)
 
     class Meta:

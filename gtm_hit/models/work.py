@@ -32,6 +32,7 @@ class Worker(models.Model):
     platform = models.SlugField(max_length=40, default="link")
     external_id = models.CharField(max_length=255)
     pseudonym = models.CharField(max_length=20, unique=True, default=pseudonym, editable=False)
+    tutorial_steps = models.JSONField(default=list, blank=True, help_text="steps of the tutorial done right")
     tutorial_done_at = models.DateTimeField(null=True, blank=True)
     created_at = models.DateTimeField(auto_now_add=True)
 
