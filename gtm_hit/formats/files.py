@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO
+
+from gtm_hit.formats.problems import FormatError, Problem
+
+
+def read_source(path: Path, most_bytes: int) -> bytes:
+    """All bytes of a file that came from somebody else.
+
+    Raises FormatError for a file that is missing, unreadable, not plain, empty, or above `most_bytes`.
+    """
+    try:
+        # A named pipe or a device would block or never end.
+        if not path.is_file():
+            raise FormatError(
+                [Problem(str(path), "", "no such file" if not path.exists() else "not a plain file")]
+            )
+        with path.open("rb") as stream:
+            data = stream.read(most_bytes + 1)
+    except (OSError, ValueError) as error:
+        raise FormatError([Problem(str(path), "", f"cannot be read: {reason_of(error)}")]) from error
+    if not data:
+        raise FormatError([Problem(str(path), "", "the file is empty")])
+    if len(data) > most_bytes:
+        raise FormatError([Problem(str(path), "", f"larger than {most_bytes} bytes")])
+    return data
+
+
+def reason_of(error: OSError | ValueError) -> str:
+    """An operating-system error without the path, which the problem names already."""
+    return (error.strerror if isinstance(error, OSError) else None) or type(error).__name__
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[BinaryIO]:
+    """A stream whose bytes appear under `path` all at once, or not at all when the block fails."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            yield stream
+        # mkstemp makes files only their owner can read; exports are meant to be shared.
+        temporary.chmod(0o644)
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def write_bytes(path: Path, data: bytes) -> None:
+    with replacing(path) as stream:
+        stream.write(data)
