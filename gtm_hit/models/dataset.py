@@ -37,6 +37,9 @@ class Dataset(models.Model):
     annotation_digits = models.PositiveSmallIntegerField(
         default=8, help_text="digits in annotation file names"
     )
+    undistorted = models.BooleanField(
+        default=False, editable=False, help_text="lens distortion was taken out of the images on import"
+    )
     instructions = models.TextField(blank=True, help_text="shown to workers before they start")
     table_digest = models.CharField(max_length=64, blank=True, editable=False)
     created_at = models.DateTimeField(auto_now_add=True)
