@@ -3,9 +3,26 @@ from __future__ import annotations
 import os
 
 from celery import Celery
+from kombu.transport import TRANSPORT_ALIASES
 
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "annotator.settings")
+TRANSPORT_ALIASES["filesystem"] = "annotator.folder_broker:Transport"
 
 app = Celery("annotator")
+app.set_default()  # "current" is per thread, and web servers have many
 app.config_from_object("django.conf:settings", namespace="CELERY")
 app.autodiscover_tasks()
+
+# `expires`: while a worker is busy or away, at most one of each waits for it.
+app.conf.beat_schedule = {
+    "requeue-lost-jobs": {
+        "task": "gtm_hit.tasks.requeue_lost_jobs",
+        "schedule": 10.0,
+        "options": {"expires": 9},
+    },
+    "expire-leases": {
+        "task": "gtm_hit.tasks.expire_leases",
+        "schedule": 60.0,
+        "options": {"expires": 59},
+    },
+}
