@@ -1,0 +1,186 @@
+"""Leases: who gets which batch, until when, and what ends it. The database decides who was first."""
+
+from __future__ import annotations
+
+from datetime import datetime, timedelta
+
+from django.conf import settings
+from django.db import IntegrityError, transaction
+from django.db.models import Exists, OuterRef, QuerySet
+from django.utils import timezone
+
+from gtm_hit.models import Assignment, Batch, Dataset, Frame, Layer, Worker
+from gtm_hit.models.work import completion_code
+
+State = Assignment.State
+
+# Each failed try means that somebody else got the batch, so tries end when the batches do.
+MAX_TRIES = 200
+
+
+class AssignmentError(Exception):
+    pass
+
+
+class NoFreeBatch(AssignmentError):
+    """Every batch this worker could take is held or was his already."""
+
+
+class BusyElsewhere(AssignmentError):
+    """The worker has an unfinished batch of another dataset."""
+
+    def __init__(self, assignment: Assignment) -> None:
+        super().__init__(f"{assignment.worker} still works on {assignment.batch}")
+        self.assignment = assignment
+
+
+class ReadOnly(AssignmentError):
+    """The layer may not be changed now; `reason` is `submitted`, `expired` or `not_author`."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(reason)
+        self.reason = reason
+
+
+class Unfinished(AssignmentError):
+    """Frames of the batch that are not done on the server's record."""
+
+    def __init__(self, frames: list[int]) -> None:
+        super().__init__(f"frames not done: {frames}")
+        self.frames = frames
+
+
+def lease_end(now: datetime | None = None) -> datetime:
+    return (now or timezone.now()) + timedelta(minutes=settings.LEASE_MINUTES)
+
+
+def expire_leases(now: datetime | None = None) -> int:
+    """Return overdue batches to the pool; the number of leases that ended."""
+    overdue = Assignment.objects.filter(state=State.LEASED, expires_at__lte=now or timezone.now())
+    return overdue.update(state=State.EXPIRED)
+
+
+def current(worker: Worker, dataset: Dataset) -> Assignment | None:
+    """What the worker has to do in the dataset now: returned work first, then the running lease."""
+    mine = Assignment.objects.filter(worker=worker, batch__dataset=dataset).select_related("batch")
+    returned = mine.filter(state=State.RETURNED).first()
+    return returned or mine.filter(state=State.LEASED, expires_at__gt=timezone.now()).first()
+
+
+def claim(worker: Worker, dataset: Dataset) -> Assignment:
+    """The worker's running lease, else his expired batch if it is still free, else the next free batch.
+
+    Raises NoFreeBatch or BusyElsewhere.
+    """
+    for _attempt in range(MAX_TRIES):
+        try:
+            with transaction.atomic():
+                return claim_once(worker, dataset)
+        except IntegrityError:
+            continue
+    raise NoFreeBatch(f"{dataset}: no batch for {worker} after {MAX_TRIES} tries")
+
+
+def claim_once(worker: Worker, dataset: Dataset) -> Assignment:
+    # Two tabs of one worker queue here, so that neither holds a second batch even for a moment.
+    Worker.objects.select_for_update().get(pk=worker.pk)
+    expire_leases()
+    if held := current(worker, dataset):
+        return held
+    elsewhere = Assignment.objects.filter(worker=worker, state=State.LEASED).select_related("batch__dataset")
+    if other := elsewhere.first():
+        raise BusyElsewhere(other)
+    if own := regained(worker, dataset):
+        return own
+    batch = free_batches(worker, dataset).first()
+    if batch is None:
+        raise NoFreeBatch(f"{dataset}: no batch for {worker}")
+    return lease(batch, worker)
+
+
+def held_batches() -> QuerySet[Assignment]:
+    return Assignment.objects.filter(batch=OuterRef("pk"), state__in=Assignment.HOLDING)
+
+
+def free_batches(worker: Worker, dataset: Dataset) -> QuerySet[Batch]:
+    """Batches nobody holds, of numbers this worker has never had, first copies first.
+
+    Locked, skipping those that others are about to take (SQLite has one writer at a time anyway).
+    """
+    had = Assignment.objects.filter(worker=worker, batch__dataset=dataset).values("batch__number")
+    free = Batch.objects.filter(~Exists(held_batches()), dataset=dataset).exclude(number__in=had)
+    return free.order_by("copy", "number").select_for_update(skip_locked=True)
+
+
+def regained(worker: Worker, dataset: Dataset) -> Assignment | None:
+    """The worker's newest expired assignment whose batch is still free, leased again."""
+    expired = Assignment.objects.filter(worker=worker, batch__dataset=dataset, state=State.EXPIRED)
+    held = Assignment.objects.filter(batch=OuterRef("batch"), state__in=Assignment.HOLDING)
+    own = expired.filter(~Exists(held)).select_related("batch").first()
+    if own is None:
+        return None
+    changes = {"state": State.LEASED, "leased_at": timezone.now(), "expires_at": lease_end()}
+    # The unique constraint on held batches refuses this if somebody was faster.
+    if not Assignment.objects.filter(pk=own.pk, state=State.EXPIRED).update(**changes):
+        return None
+    own.refresh_from_db()
+    return own
+
+
+def lease(batch: Batch, worker: Worker) -> Assignment:
+    name = f"batch-{batch.number:04d}-{worker.pseudonym}"
+    layer = Layer.objects.create(dataset_id=batch.dataset_id, name=name, kind=Layer.Kind.ASSIGNMENT)
+    return Assignment.objects.create(batch=batch, worker=worker, layer=layer, expires_at=lease_end())
+
+
+def locked_for_layer(layer: Layer) -> Assignment | None:
+    if layer.kind != Layer.Kind.ASSIGNMENT:
+        return None
+    return Assignment.objects.select_for_update().filter(layer=layer).first()
+
+
+def require_editable(layer: Layer, assignment: Assignment | None, worker: Worker | None) -> None:
+    """A worker's layer is changed by that worker only, and only while he holds the batch."""
+    if layer.kind != Layer.Kind.ASSIGNMENT and worker is None:
+        return
+    if assignment is None or worker is None or assignment.worker_id != worker.pk:
+        raise ReadOnly("not_author")
+    if reason := read_only_reason(assignment):
+        raise ReadOnly(reason)
+
+
+def read_only_reason(assignment: Assignment) -> str:
+    """Why the assignment's layer may not be changed now; empty when it may."""
+    if assignment.editable:
+        return ""
+    return "expired" if assignment.state in {State.LEASED, State.EXPIRED} else "submitted"
+
+
+def extend(assignment: Assignment) -> None:
+    """Activity keeps a lease alive."""
+    Assignment.objects.filter(pk=assignment.pk, state=State.LEASED).update(expires_at=lease_end())
+
+
+def submit(assignment: Assignment) -> Assignment:
+    """End the work and give its code; again: the same code. Raises Unfinished or ReadOnly."""
+    with transaction.atomic():
+        locked = (
+            Assignment.objects.select_for_update().select_related("batch", "worker").get(pk=assignment.pk)
+        )
+        if locked.state in {State.SUBMITTED, State.ACCEPTED, State.REJECTED}:
+            return locked
+        if reason := read_only_reason(locked):
+            raise ReadOnly(reason)
+        if missing := unfinished_frames(locked):
+            raise Unfinished(missing)
+        locked.state = State.SUBMITTED
+        locked.submitted_at = timezone.now()
+        locked.code = locked.code or completion_code()
+        locked.save(update_fields=["state", "submitted_at", "code"])
+        return locked
+
+
+def unfinished_frames(assignment: Assignment) -> list[int]:
+    done = assignment.layer.layer_frames.filter(done=True).values("frame")
+    missing = Frame.objects.filter(batches=assignment.batch_id).exclude(pk__in=done)
+    return list(missing.order_by("number").values_list("number", flat=True))
