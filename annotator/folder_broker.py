@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import uuid
 from pathlib import Path
 from time import time_ns
@@ -26,7 +25,7 @@ class Channel(filesystem.Channel):
         folder = Path(self.data_folder_out)
         partial = folder / f"partial-{name}.writing"
         partial.write_text(dumps(payload), encoding="utf-8")
-        os.replace(partial, folder / name)
+        partial.replace(folder / name)
 
 
 class Transport(filesystem.Transport):

@@ -1,0 +1,186 @@
+"""The numbers of the staff pages, each page with a constant number of queries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from django.db.models import Count, IntegerField, OuterRef, QuerySet, Subquery
+from django.db.models.functions import Coalesce
+from django.utils import timezone
+
+from gtm_hit.models import (
+    Annotation,
+    Assignment,
+    Batch,
+    Camera,
+    Dataset,
+    Frame,
+    Image,
+    Job,
+    Layer,
+    LayerFrame,
+)
+
+
+@dataclass(frozen=True)
+class DatasetSummary:
+    dataset: Dataset
+    cameras: int
+    frames: int
+    annotated: int  # frames somebody finished, in a layer that is not hidden
+    batches: int
+    layers: int
+    first_number: int | None
+    last_number: int | None
+    pictures: list[Image]  # the first frame's, by camera
+
+
+def datasets() -> list[DatasetSummary]:
+    return _summaries(Dataset.objects.all())
+
+
+def dataset(slug: str) -> DatasetSummary | None:
+    return next(iter(_summaries(Dataset.objects.filter(slug=slug))), None)
+
+
+def layers(dataset: Dataset) -> QuerySet[Layer]:
+    """Layers with `frames_saved`, `frames_done`, `annotation_count`, `people` and `changed_at`."""
+    saved = LayerFrame.objects.filter(layer=OuterRef("pk"), revision__gte=1)
+    annotations = Annotation.objects.filter(layer=OuterRef("pk"))
+    return dataset.layers.annotate(
+        frames_saved=_count(saved, "layer", "pk"),
+        frames_done=_count(saved.filter(done=True), "layer", "pk"),
+        annotation_count=_count(annotations, "layer", "pk"),
+        people=_count(annotations, "layer", "person", distinct=True),
+        changed_at=Subquery(saved.order_by("-changed_at").values("changed_at")[:1]),
+    ).order_by("name")
+
+
+@dataclass(frozen=True)
+class BatchCounts:
+    batches: int
+    free: int
+    leased: int
+    submitted: int
+    accepted: int
+    frames: int
+
+
+def batch_counts(dataset: Dataset) -> BatchCounts:
+    states = dict(
+        Assignment.objects.filter(batch__dataset=dataset, state__in=Assignment.HOLDING)
+        .values_list("state")
+        .annotate(count=Count("pk"))
+        .order_by()
+    )
+    batches = dataset.batches.count()
+    return BatchCounts(
+        batches=batches,
+        free=batches - sum(states.values()),
+        leased=states.get("leased", 0) + states.get("returned", 0),
+        submitted=states.get("submitted", 0),
+        accepted=states.get("accepted", 0),
+        frames=Frame.objects.filter(batches__dataset=dataset).distinct().count(),
+    )
+
+
+def batches(dataset: Dataset) -> QuerySet[Batch]:
+    """Batches with `frame_count`, `first_number` and `last_number`; pages hand out `with_assignments`."""
+    frames = Frame.objects.filter(batches=OuterRef("pk"))
+    return dataset.batches.annotate(
+        frame_count=_count(Batch.frames.through.objects.filter(batch=OuterRef("pk")), "batch", "pk"),
+        first_number=Subquery(frames.order_by("number").values("number")[:1]),
+        last_number=Subquery(frames.order_by("-number").values("number")[:1]),
+    ).order_by("copy", "number")
+
+
+@dataclass(frozen=True)
+class BatchRow:
+    batch: Batch
+    assignment: Assignment | None  # the newest; with `frames_done` and `people`
+    earlier: int
+
+    @property
+    def state(self) -> str:
+        """The assignment's state, or `free` when anybody may have the batch."""
+        if self.assignment is None or self.assignment.state not in Assignment.HOLDING:
+            return "free"
+        if self.assignment.state == Assignment.State.LEASED and self.assignment.expires_at <= timezone.now():
+            return Assignment.State.EXPIRED
+        return self.assignment.state
+
+
+def with_assignments(batches: Iterable[Batch]) -> list[BatchRow]:
+    """Two queries, however many batches."""
+    done = LayerFrame.objects.filter(layer=OuterRef("layer"), done=True)
+    annotations = Annotation.objects.filter(layer=OuterRef("layer"))
+    assignments = (
+        Assignment.objects.filter(batch__in=list(batches))
+        .select_related("worker", "layer")
+        .annotate(
+            frames_done=_count(done, "layer", "pk"),
+            people=_count(annotations, "layer", "person", distinct=True),
+        )
+        .order_by("-leased_at")
+    )
+    newest: dict[int, list[Assignment]] = {}
+    for assignment in assignments:
+        newest.setdefault(assignment.batch_id, []).append(assignment)
+    rows = []
+    for batch in batches:
+        mine = newest.get(batch.pk, [])
+        held = next((a for a in mine if a.state in Assignment.HOLDING), None)
+        rows.append(BatchRow(batch, held or next(iter(mine), None), max(len(mine) - 1, 0)))
+    return rows
+
+
+def jobs() -> QuerySet[Job]:
+    return Job.objects.select_related("dataset", "created_by")
+
+
+def _summaries(found: QuerySet[Dataset]) -> list[DatasetSummary]:
+    frames = Frame.objects.filter(dataset=OuterRef("pk")).order_by("number")
+    finished = LayerFrame.objects.filter(layer__dataset=OuterRef("pk"), layer__hidden=False, done=True)
+    rows = list(
+        found.annotate(
+            camera_count=_count(Camera.objects.filter(dataset=OuterRef("pk")), "dataset", "pk"),
+            frame_count=_count(frames.order_by(), "dataset", "pk"),
+            annotated_count=_count(finished, "layer__dataset", "frame", distinct=True),
+            batch_count=_count(Batch.objects.filter(dataset=OuterRef("pk")), "dataset", "pk"),
+            layer_count=_count(Layer.objects.filter(dataset=OuterRef("pk")), "dataset", "pk"),
+            first_frame=Subquery(frames.values("pk")[:1]),
+            first_number=Subquery(frames.values("number")[:1]),
+            last_number=Subquery(frames.reverse().values("number")[:1]),
+        )
+    )
+    pictures: dict[int, list[Image]] = {}
+    for image in (
+        Image.objects.filter(frame__in=[row.first_frame for row in rows if row.first_frame])
+        .select_related("camera")
+        .order_by("camera__index")
+    ):
+        pictures.setdefault(image.frame_id, []).append(image)
+    return [
+        DatasetSummary(
+            dataset=row,
+            cameras=row.camera_count,
+            frames=row.frame_count,
+            annotated=row.annotated_count,
+            batches=row.batch_count,
+            layers=row.layer_count,
+            first_number=row.first_number,
+            last_number=row.last_number,
+            pictures=pictures.get(row.first_frame, []),
+        )
+        for row in rows
+    ]
+
+
+def _count(related: QuerySet[Any], group: str, counted: str, *, distinct: bool = False) -> Coalesce:
+    """A correlated count, so that counting two relations in one query multiplies nothing."""
+    counts = (
+        related.order_by().values(group).annotate(number=Count(counted, distinct=distinct)).values("number")
+    )
+    return Coalesce(Subquery(counts, output_field=IntegerField()), 0)
