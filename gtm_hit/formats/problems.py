@@ -45,7 +45,9 @@ class ProblemList:
         return bool(self.found)
 
     def add(self, place: str, reason: str, path: Path | str | None = None) -> None:
-        self.extend([Problem(self.path if path is None else str(path), place, reason)])
+        # A file name need not be text; a message must be.
+        name = str(self.path if path is None else path).encode("utf-8", "backslashreplace").decode()
+        self.extend([Problem(name, place, reason)])
 
     def extend(self, problems: Iterable[Problem]) -> None:
         for problem in problems:
@@ -79,7 +81,7 @@ _SHORT = _Short()
 
 
 def _seen_from(folder: Path, path: str) -> str:
-    try:
-        return str(Path(path).relative_to(folder))
-    except ValueError:
-        return path
+    for start in (folder, folder.resolve()):
+        if Path(path).is_relative_to(start):
+            return str(Path(path).relative_to(start))
+    return path

@@ -1,0 +1,124 @@
+"""Where the parts of a dataset lie in its folder, as WILDTRACK and MultiviewX publish theirs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from gtm_hit.formats.calibration_files import CalibrationFiles, find_calibrations
+from gtm_hit.formats.dataset_folder import DatasetFolder
+from gtm_hit.formats.problems import ProblemList
+
+IMAGE_FOLDERS = ("Image_subsets", "images")
+IMAGE_SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
+ANNOTATION_FOLDER = "annotations_positions"
+
+_MULTIVIEWX_NAME = re.compile(r"Camera[0-9]+")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The files of one dataset, by camera and by frame number.
+
+    `cameras` are the names of the image folders in natural order, which is the order of `viewNum`, and
+    `calibration_names` what their calibration calls them (CVLab1 ... IDIAP3 for WILDTRACK's C1 ... C7).
+    `intrinsic` belongs to images without lens distortion or with little (MultiviewX), `intrinsic_original` to
+    images as the cameras took them; one of the two may be empty. `annotations` is by the number of the frame
+    they belong to, which is `annotation_offset` less than the number in the file name.
+    """
+
+    root: Path
+    cameras: tuple[str, ...]
+    calibration_names: tuple[str, ...]
+    images: Mapping[str, Mapping[int, Path]]
+    extrinsic: Mapping[str, Path]
+    intrinsic: Mapping[str, Path]
+    intrinsic_original: Mapping[str, Path]
+    annotations: Mapping[int, Path]
+    annotation_offset: int
+
+    @property
+    def frames(self) -> tuple[int, ...]:
+        return tuple(self.images[self.cameras[0]])
+
+
+def find_layout(
+    root: Path, images: Path | None = None, annotation_offset: int | None = None, calibrated: bool = True
+) -> Layout:
+    """The parts of the dataset in the folder `root`.
+
+    `images` is the folder with a folder per camera or an image per camera, seen from `root`; without it the
+    published names are looked for. `annotation_offset` None means 1 for MultiviewX, whose annotation 00001
+    belongs to image 0000, and 0 for everything else. With `calibrated` false no calibration is asked for.
+
+    Raises FormatError with everything missing, surplus, ambiguous, or leading out of the folder.
+    """
+    problems = ProblemList(root)
+    dataset = DatasetFolder(root, problems)
+    by_camera = _images(dataset, images)
+    frames = _frames(by_camera, problems)
+    files = find_calibrations(dataset, by_camera) if calibrated and by_camera else CalibrationFiles()
+    if files.names and not files.intrinsic and not files.intrinsic_original:
+        problems.add("", "no intrinsic files: none of intrinsic_zero, intrinsic, intrinsic_original")
+    folder = dataset.root / ANNOTATION_FOLDER
+    annotations = dataset.by_number(folder, {".json"}) if folder.is_dir() else {}
+    if annotation_offset is None:
+        annotation_offset = _published_offset(files.names.values(), frames, annotations)
+    for number, path in annotations.items():
+        if frames and number - annotation_offset not in frames:
+            problems.add("", f"no images of frame {number - annotation_offset}", path)
+    problems.raise_if_any()
+    return Layout(
+        root=dataset.root,
+        cameras=tuple(by_camera),
+        calibration_names=tuple(files.names.get(camera, camera) for camera in by_camera),
+        images=by_camera,
+        extrinsic=files.extrinsic,
+        intrinsic=files.intrinsic,
+        intrinsic_original=files.intrinsic_original,
+        annotations={number - annotation_offset: path for number, path in annotations.items()},
+        annotation_offset=annotation_offset,
+    )
+
+
+def _images(dataset: DatasetFolder, chosen: Path | None) -> dict[str, dict[int, Path]]:
+    candidates = [dataset.root / name for name in (IMAGE_FOLDERS if chosen is None else [chosen])]
+    folder = next((path for path in candidates if path.is_dir()), None)
+    if folder is None:
+        dataset.problems.add("", "no such folder of images", " or ".join(map(str, candidates)))
+        return {}
+    if chosen is not None and not folder.resolve().is_relative_to(dataset.root):
+        # Whoever runs the import may keep images on another disk; what is in there may not lead further.
+        dataset = DatasetFolder(folder, dataset.problems)
+    folders = [path for path in dataset.entries(folder) if path.is_dir()]
+    if folders:
+        return {path.name: _images_of_camera(dataset, path) for path in folders}
+    files = dataset.by_name(dataset.files(folder, IMAGE_SUFFIXES), lambda path: path.stem)
+    if not files:
+        dataset.problems.add("", "neither a folder per camera nor an image per camera", folder)
+    return {name: {0: path} for name, path in files.items()}
+
+
+def _images_of_camera(dataset: DatasetFolder, folder: Path) -> dict[int, Path]:
+    found = dataset.by_number(folder, IMAGE_SUFFIXES)
+    if not found:
+        dataset.problems.add("", "no images in this folder", folder)
+    return found
+
+
+def _frames(by_camera: Mapping[str, Mapping[int, Path]], problems: ProblemList) -> set[int]:
+    """All frame numbers; every camera is expected to have each of them."""
+    frames: set[int] = set().union(*by_camera.values())
+    for camera, images in by_camera.items():
+        missing = sorted(frames - images.keys())
+        if images and missing:
+            first = ", ".join(map(str, missing[:5])) + (", ..." if len(missing) > 5 else "")
+            problems.add(f"camera {camera}", f"no image of {len(missing)} frames other cameras have: {first}")
+    return frames
+
+
+def _published_offset(names: Collection[str], frames: set[int], annotations: Mapping[int, Path]) -> int:
+    published = bool(names) and all(_MULTIVIEWX_NAME.fullmatch(name) for name in names)
+    return int(published and min(frames) == 0 and min(annotations, default=0) == 1)
