@@ -26,12 +26,19 @@ class CalibrationFiles:
     intrinsic_original: Mapping[str, Path] = field(default_factory=dict)
 
 
-def find_calibrations(dataset: DatasetFolder, cameras: Collection[str]) -> CalibrationFiles:
-    """The files in `calibrations/`: one folder per part, or all in one where a file may hold both parts."""
-    folder = dataset.root / CALIBRATION_FOLDER
+def find_calibrations(
+    dataset: DatasetFolder, cameras: Collection[str], chosen: Path | None = None
+) -> CalibrationFiles:
+    """The files in `calibrations/`: one folder per part, or all in one where a file may hold both parts.
+
+    `chosen` is another folder of that kind, seen from the dataset's.
+    """
+    folder = dataset.root / (chosen or CALIBRATION_FOLDER)
     if not folder.is_dir():
-        dataset.problems.add("", f"no folder {CALIBRATION_FOLDER}", dataset.root)
+        dataset.problems.add("", f"no folder {chosen or CALIBRATION_FOLDER}", dataset.root)
         return CalibrationFiles()
+    if chosen is not None:
+        dataset = dataset.at(folder)
     extrinsic_folder, intrinsic_folder = folder / "extrinsic", folder / "intrinsic_zero"
     if not extrinsic_folder.is_dir():
         extrinsic_folder = intrinsic_folder = folder

@@ -18,6 +18,12 @@ class DatasetFolder:
         self.root = root.resolve()
         self.problems = problems
 
+    def at(self, chosen: Path) -> DatasetFolder:
+        """For a folder that was named explicitly: it may be elsewhere, what it holds may not lead further."""
+        if chosen.resolve().is_relative_to(self.root):
+            return self
+        return DatasetFolder(chosen, self.problems)
+
     def entries(self, folder: Path) -> list[Path]:
         """What lies in a folder, in natural order, without hidden things and links that lead out."""
         if not self._holds(folder):

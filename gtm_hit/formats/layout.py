@@ -45,13 +45,19 @@ class Layout:
 
 
 def find_layout(
-    root: Path, images: Path | None = None, annotation_offset: int | None = None, calibrated: bool = True
+    root: Path,
+    images: Path | None = None,
+    annotation_offset: int | None = None,
+    calibrated: bool = True,
+    calibrations: Path | None = None,
+    annotations: Path | None = None,
 ) -> Layout:
     """The parts of the dataset in the folder `root`.
 
     `images` is the folder with a folder per camera or an image per camera, seen from `root`; without it the
-    published names are looked for. `annotation_offset` None means 1 for MultiviewX, whose annotation 00001
-    belongs to image 0000, and 0 for everything else. With `calibrated` false no calibration is asked for.
+    published names are looked for. `calibrations` and `annotations` name these folders likewise.
+    `annotation_offset` None means 1 for MultiviewX, whose annotation 00001 belongs to image 0000, and 0 for
+    everything else. With `calibrated` false no calibration is asked for.
 
     Raises FormatError with everything missing, surplus, ambiguous, or leading out of the folder.
     """
@@ -59,14 +65,14 @@ def find_layout(
     dataset = DatasetFolder(root, problems)
     by_camera = _images(dataset, images)
     frames = _frames(by_camera, problems)
-    files = find_calibrations(dataset, by_camera) if calibrated and by_camera else CalibrationFiles()
+    asked = calibrated and by_camera
+    files = find_calibrations(dataset, by_camera, calibrations) if asked else CalibrationFiles()
     if files.names and not files.intrinsic and not files.intrinsic_original:
         problems.add("", "no intrinsic files: none of intrinsic_zero, intrinsic, intrinsic_original")
-    folder = dataset.root / ANNOTATION_FOLDER
-    annotations = dataset.by_number(folder, {".json"}) if folder.is_dir() else {}
+    annotation_files = _annotations(dataset, annotations)
     if annotation_offset is None:
-        annotation_offset = _published_offset(files.names.values(), frames, annotations)
-    for number, path in annotations.items():
+        annotation_offset = _published_offset(files.names.values(), frames, annotation_files)
+    for number, path in annotation_files.items():
         if frames and number - annotation_offset not in frames:
             problems.add("", f"no images of frame {number - annotation_offset}", path)
     problems.raise_if_any()
@@ -78,7 +84,7 @@ def find_layout(
         extrinsic=files.extrinsic,
         intrinsic=files.intrinsic,
         intrinsic_original=files.intrinsic_original,
-        annotations={number - annotation_offset: path for number, path in annotations.items()},
+        annotations={number - annotation_offset: path for number, path in annotation_files.items()},
         annotation_offset=annotation_offset,
     )
 
@@ -106,6 +112,17 @@ def _images_of_camera(dataset: DatasetFolder, folder: Path) -> dict[int, Path]:
     if not found:
         dataset.problems.add("", "no images in this folder", folder)
     return found
+
+
+def _annotations(dataset: DatasetFolder, chosen: Path | None) -> dict[int, Path]:
+    folder = dataset.root / (chosen or ANNOTATION_FOLDER)
+    if chosen is not None:
+        dataset = dataset.at(folder)
+    if folder.is_dir():
+        return dataset.by_number(folder, {".json"})
+    if chosen is not None:
+        dataset.problems.add("", "no such folder of annotations", folder)
+    return {}
 
 
 def _frames(by_camera: Mapping[str, Mapping[int, Path]], problems: ProblemList) -> set[int]:

@@ -274,6 +274,24 @@ def test_a_name_that_is_not_text_can_be_told(tmp_path: Path) -> None:
     "\n".join(problems_of(tmp_path)).encode()
 
 
+def test_calibrations_and_annotations_may_be_chosen_anywhere(tmp_path: Path) -> None:
+    make_dataset(tmp_path / "set")
+    for name in ("calibrations", "annotations_positions"):
+        (tmp_path / "set" / name).rename(tmp_path / f"my-{name}")
+    layout = find_layout(
+        tmp_path / "set",
+        calibrations=tmp_path / "my-calibrations",
+        annotations=tmp_path / "my-annotations_positions",
+    )
+    assert layout.extrinsic["C1"].parent.parent.name == "my-calibrations"
+    assert list(layout.annotations) == [0, 5]
+
+
+def test_a_chosen_folder_of_annotations_that_is_not_there_is_told(tmp_path: Path) -> None:
+    make_dataset(tmp_path)
+    assert problems_of(tmp_path, annotations=Path("other")) == ["other: no such folder of annotations"]
+
+
 # Matching
 
 
