@@ -10,6 +10,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from gtm_hit.geometry import lens
+
 Floats = NDArray[np.float64]
 
 DISTORTION_LENGTHS = (4, 5, 8, 12, 14)  # the lengths OpenCV's model comes in
@@ -71,7 +73,7 @@ class Camera:
     @cached_property
     def rotation(self) -> Floats:
         """World to camera, (3, 3)."""
-        rotation = cv2.Rodrigues(self.rvec)[0]
+        rotation: Floats = cv2.Rodrigues(self.rvec)[0].astype(np.float64)
         rotation.setflags(write=False)
         return rotation
 
@@ -79,6 +81,14 @@ class Camera:
     def centre(self) -> Floats:
         """Where the camera is in the world, (3,) metres."""
         return -self.rotation.T @ self.tvec
+
+    @cached_property
+    def has_lens(self) -> bool:
+        return bool(np.any(self.distortion))
+
+    @cached_property
+    def tilt(self) -> Floats | None:
+        return lens.tilt_matrix(self.distortion)
 
     def as_json(self) -> dict[str, Any]:
         """What the browser's `Camera` is made from."""

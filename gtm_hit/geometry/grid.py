@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 Ids = NDArray[np.int64]
+Precision = type[np.float32] | type[np.float64]
 
 
 class GridError(ValueError):
@@ -44,13 +46,16 @@ class Grid:
         """Width along X and length along Y, metres."""
         return self.columns * self.step, self.rows * self.step
 
-    def column_metres(self, columns: ArrayLike) -> Floats:
-        """X of columns, metres: the order of operations the published rectangles were made with."""
-        return self.origin_x + np.asarray(columns, dtype=np.float64) * self.extent[0] / self.columns
+    def column_metres(self, columns: ArrayLike, precision: Precision = np.float64) -> NDArray[Any]:
+        """X of columns, metres, computed in `precision`.
 
-    def row_metres(self, rows: ArrayLike) -> Floats:
+        The published rectangles were made with this order of operations in float32.
+        """
+        return self._along(columns, self.columns, self.extent[0], self.origin_x, precision)
+
+    def row_metres(self, rows: ArrayLike, precision: Precision = np.float64) -> NDArray[Any]:
         """Y of rows, metres."""
-        return self.origin_y + np.asarray(rows, dtype=np.float64) * self.extent[1] / self.rows
+        return self._along(rows, self.rows, self.extent[1], self.origin_y, precision)
 
     def metres(self, positions: ArrayLike) -> Floats:
         """Ground X and Y, (N, 2), of positions (N,)."""
@@ -63,20 +68,33 @@ class Grid:
         -1 where the point is more than half a step outside the grid or NaN: ids are integers and have no NaN.
         """
         cells = self._cells(xy)
-        inside = np.all((cells >= 0) & (cells < (self.columns, self.rows)), axis=1)
+        inside: NDArray[np.bool_] = np.logical_and(cells >= 0, cells < (self.columns, self.rows)).all(axis=1)
         columns, rows = np.where(inside[:, None], cells, 0.0).astype(np.int64).T
         return np.where(inside, rows * self.columns + columns, -1)
 
     def nearest(self, xy: ArrayLike) -> Ids:
         """Nearest position, (N,), of ground points (N, 2) wherever they are; -1 only for NaN."""
         cells = self._cells(xy)
-        known = ~np.isnan(cells).any(axis=1)
+        known: NDArray[np.bool_] = np.logical_not(np.isnan(cells).any(axis=1))
         clamped = np.clip(np.where(known[:, None], cells, 0.0), 0, (self.columns - 1, self.rows - 1))
         columns, rows = clamped.astype(np.int64).T
         return np.where(known, rows * self.columns + columns, -1)
 
+    def check(self, positions: Ids) -> None:
+        """Raise GridError for the first position that is not on the grid."""
+        outside = positions[(positions < 0) | (positions >= self.count)]
+        if outside.size:
+            raise GridError(f"position {outside[0]} is not on the grid of {self.columns}×{self.rows}")
+
     def contains(self, position: int) -> bool:
         return 0 <= position < self.count
+
+    @staticmethod
+    def _along(
+        cells: ArrayLike, count: int, extent: float, origin: float, precision: Precision
+    ) -> NDArray[Any]:
+        along: NDArray[Any] = np.asarray(cells).astype(precision)
+        return precision(origin) + along * precision(extent) / precision(count)
 
     def _cells(self, xy: ArrayLike) -> Floats:
         points = np.asarray(xy, dtype=np.float64).reshape(-1, 2)
