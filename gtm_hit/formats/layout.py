@@ -51,6 +51,7 @@ def find_layout(
     calibrated: bool = True,
     calibrations: Path | None = None,
     annotations: Path | None = None,
+    problems: ProblemList | None = None,
 ) -> Layout:
     """The parts of the dataset in the folder `root`.
 
@@ -59,9 +60,25 @@ def find_layout(
     `annotation_offset` None means 1 for MultiviewX, whose annotation 00001 belongs to image 0000, and 0 for
     everything else. With `calibrated` false no calibration is asked for.
 
-    Raises FormatError with everything missing, surplus, ambiguous, or leading out of the folder.
+    Raises FormatError with everything missing, surplus, ambiguous, or leading out of the folder; with a list of
+    `problems` given, adds to that instead, and the layout has what could be found.
     """
-    problems = ProblemList(root)
+    found = ProblemList(root) if problems is None else problems
+    layout = _find_layout(root, images, annotation_offset, calibrated, calibrations, annotations, found)
+    if problems is None:
+        found.raise_if_any()
+    return layout
+
+
+def _find_layout(
+    root: Path,
+    images: Path | None,
+    annotation_offset: int | None,
+    calibrated: bool,
+    calibrations: Path | None,
+    annotations: Path | None,
+    problems: ProblemList,
+) -> Layout:
     dataset = DatasetFolder(root, problems)
     by_camera = _images(dataset, images)
     frames = _frames(by_camera, problems)
@@ -75,7 +92,6 @@ def find_layout(
     for number, path in annotation_files.items():
         if frames and number - annotation_offset not in frames:
             problems.add("", f"no images of frame {number - annotation_offset}", path)
-    problems.raise_if_any()
     return Layout(
         root=dataset.root,
         cameras=tuple(by_camera),

@@ -9,7 +9,7 @@ import pytest
 from gtm_hit.formats.calibration_files import match_names
 from gtm_hit.formats.dataset_folder import natural_key
 from gtm_hit.formats.layout import find_layout
-from gtm_hit.formats.problems import FormatError
+from gtm_hit.formats.problems import FormatError, ProblemList
 
 WILDTRACK = ["CVLab1", "CVLab2", "CVLab3", "CVLab4", "IDIAP1", "IDIAP2", "IDIAP3"]
 
@@ -290,6 +290,17 @@ def test_calibrations_and_annotations_may_be_chosen_anywhere(tmp_path: Path) -> 
 def test_a_chosen_folder_of_annotations_that_is_not_there_is_told(tmp_path: Path) -> None:
     make_dataset(tmp_path)
     assert problems_of(tmp_path, annotations=Path("other")) == ["other: no such folder of annotations"]
+
+
+def test_a_caller_may_collect_the_problems_and_take_what_was_found(tmp_path: Path) -> None:
+    make_dataset(tmp_path)
+    (tmp_path / "Image_subsets" / "C2" / "00000005.png").unlink()
+    problems = ProblemList(tmp_path)
+    layout = find_layout(tmp_path, problems=problems)
+    assert [str(problem.reason) for problem in problems.found] == [
+        "no image of 1 frames other cameras have: 5"
+    ]
+    assert layout.cameras == ("C1", "C2", "C3")
 
 
 # Matching
