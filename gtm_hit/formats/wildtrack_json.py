@@ -1,0 +1,226 @@
+"""One JSON file per annotated frame, as WILDTRACK and MultiviewX publish them in `annotations_positions/`."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gtm_hit.formats.files import read_source, write_bytes
+from gtm_hit.formats.problems import FormatError, ProblemList, shown
+from gtm_hit.geometry.grid import Grid
+
+MOST_BYTES = 64_000_000
+MOST_ID = 2**31 - 1
+
+_BOX_KEYS = ("viewNum", "xmin", "ymin", "xmax", "ymax")
+_PERSON_KEYS = {"personID", "positionID", "views"}
+_VIEW_VALUES = itemgetter(*_BOX_KEYS)
+_NUMBER_AT_END = re.compile(r"([0-9]{1,9})$")
+
+
+@dataclass(frozen=True, eq=False)
+class PersonPosition:
+    """One person of one frame.
+
+    boxes : (C, 4) int32, xmin ymin xmax ymax in pixels by camera, all -1 where not visible; None without views
+    extra : further keys of the file and their JSON values
+    """
+
+    person: int
+    position: int
+    boxes: np.ndarray | None
+    extra: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class FrameAnnotations:
+    number: int
+    people: list[PersonPosition]
+
+
+def read_frames(
+    paths: Iterable[Path], grid: Grid, cameras: int, views_required: bool = True
+) -> Iterator[FrameAnnotations]:
+    """The frames of files, one at a time; raises FormatError for all bad files together after the last."""
+    problems = ProblemList("")
+    for path in paths:
+        try:
+            yield read_frame(path, grid, cameras, views_required)
+        except FormatError as error:
+            problems.extend(error.problems)
+    problems.raise_if_any()
+
+
+def read_frame(path: Path, grid: Grid, cameras: int, views_required: bool = True) -> FrameAnnotations:
+    """The people of one file; the frame number is the one its name ends with.
+
+    Raises FormatError with everything wrong in the file.
+    """
+    match = _NUMBER_AT_END.search(path.stem)
+    data = read_source(path, MOST_BYTES)
+    problems = ProblemList(path)
+    if match is None:
+        problems.add("", "the name does not end with a frame number of at most 9 digits")
+    people = _people(data, grid, cameras, views_required, problems)
+    problems.raise_if_any()
+    return FrameAnnotations(int(match[1]) if match else -1, people)
+
+
+def parse_people(
+    data: bytes, path: str, grid: Grid, cameras: int, views_required: bool = True
+) -> list[PersonPosition]:
+    """The people of one frame's JSON; `path` is what problems are reported under."""
+    problems = ProblemList(path)
+    people = _people(data, grid, cameras, views_required, problems)
+    problems.raise_if_any()
+    return people
+
+
+def frame_json(people: Iterable[PersonPosition], cameras: int) -> bytes:
+    """The bytes of one frame's file: what json.dumps with an indent of 4 makes, several times as fast.
+
+    People keep their order, `extra` follows the published keys. Raises ValueError for what no reader takes: a
+    person twice or without boxes of every camera, negative ids, extra keys that hide the published ones.
+    """
+    template = _person_template(cameras)
+    texts = []
+    seen: set[int] = set()
+    for person in people:
+        if person.person in seen or min(person.person, person.position) < 0:
+            raise ValueError(
+                f"person {person.person} at position {person.position} is there twice or negative"
+            )
+        seen.add(person.person)
+        boxes = person.boxes
+        if boxes is None or boxes.shape != (cameras, 4) or boxes.dtype.kind != "i":
+            raise ValueError(f"person {person.person} does not have integer boxes of {cameras} cameras")
+        extra = _extra_text(person.extra) if person.extra else ""
+        texts.append(template % (person.person, person.position, *boxes.ravel().tolist(), extra))
+    return ("[\n" + ",\n".join(texts) + "\n]" if texts else "[]").encode()
+
+
+def write_frame(folder: Path, frame: FrameAnnotations, cameras: int, digits: int = 8) -> Path:
+    """Writes `<folder>/<number>.json`; WILDTRACK has 8 digits, MultiviewX 5."""
+    path = folder / f"{frame.number:0{digits}d}.json"
+    write_bytes(path, frame_json(frame.people, cameras))
+    return path
+
+
+@cache
+def _person_template(cameras: int) -> str:
+    keys = dict.fromkeys(_BOX_KEYS[1:], "%d")
+    views = [{"viewNum": camera, **keys} for camera in range(cameras)]
+    text = json.dumps([{"personID": "%d", "positionID": "%d", "views": views}], indent=4).replace(
+        '"%d"', "%d"
+    )
+    return text.removeprefix("[\n").removesuffix("\n    }\n]") + "%s\n    }"
+
+
+def _extra_text(extra: Mapping[str, Any]) -> str:
+    if hidden := _PERSON_KEYS & extra.keys():
+        raise ValueError(f"extra keys would hide {sorted(hidden)}")
+    lines = json.dumps(extra, indent=4, allow_nan=False).splitlines()
+    # Without the braces, each line two levels deeper: a person stands inside a list.
+    return ",\n" + "\n".join(f"    {line}" for line in lines[1:-1])
+
+
+def _people(
+    data: bytes, grid: Grid, cameras: int, views_required: bool, problems: ProblemList
+) -> list[PersonPosition]:
+    entries = _entries(data, problems)
+    people = []
+    first_at: dict[int, int] = {}
+    for index, entry in enumerate(entries):
+        place = f"entry {index}"
+        if not isinstance(entry, dict):
+            problems.add(place, f"is {shown(entry)} instead of an object")
+            continue
+        person = _id(entry, "personID", MOST_ID, place, problems)
+        position = _id(entry, "positionID", grid.count - 1, place, problems)
+        boxes = _boxes(entry, cameras, place, problems) if views_required or "views" in entry else None
+        if person >= 0 and (first := first_at.setdefault(person, index)) != index:
+            problems.add(place, f"person {person} is already in entry {first}")
+        extra = {key: value for key, value in entry.items() if key not in _PERSON_KEYS}
+        people.append(PersonPosition(person, position, boxes, extra))
+    return people
+
+
+def _entries(data: bytes, problems: ProblemList) -> list[Any]:
+    try:
+        entries = json.loads(data, parse_constant=_refuse_constant, parse_float=_finite)
+    except (ValueError, RecursionError) as error:
+        problems.add("", f"not JSON that can be read: {shown(str(error))}")
+        return []
+    if isinstance(entries, list):
+        return entries
+    problems.add("", f"holds {shown(entries)} instead of a list of people")
+    return []
+
+
+def _refuse_constant(word: str) -> None:
+    raise ValueError(f"{word} is not a number")
+
+
+def _finite(word: str) -> float:
+    value = float(word)
+    if not math.isfinite(value):
+        raise ValueError(f"{word} is too large")
+    return value
+
+
+def _id(entry: Mapping[str, Any], key: str, most: int, place: str, problems: ProblemList) -> int:
+    value = entry.get(key)
+    # bool is an int to Python and true is not a person.
+    if type(value) is int and 0 <= value <= most:
+        return value
+    if key not in entry:
+        problems.add(place, f"has no {key}")
+    else:
+        problems.add(place, f"{key} is {shown(value)} instead of an integer from 0 to {most}")
+    return -1
+
+
+def _boxes(entry: Mapping[str, Any], cameras: int, place: str, problems: ProblemList) -> np.ndarray | None:
+    views = entry.get("views")
+    if not isinstance(views, list) or len(views) != cameras:
+        given = f"{len(views)} views" if isinstance(views, list) else f"{shown(views)} as views"
+        problems.add(
+            place, f"has {given} instead of a list of {cameras}" if "views" in entry else "has no views"
+        )
+        return None
+    boxes: list[tuple[int, ...] | None] = [None] * cameras
+    for index, view in enumerate(views):
+        try:
+            values = _VIEW_VALUES(view)
+        except (KeyError, TypeError, IndexError):
+            problems.add(f"{place}, view {index}", f"is {shown(view)} without one of {', '.join(_BOX_KEYS)}")
+            continue
+        reason = _wrong_view(values, boxes)
+        if reason:
+            problems.add(f"{place}, view {index}", reason)
+        else:
+            boxes[values[0]] = values[1:]
+    return np.array(boxes, dtype=np.int32) if None not in boxes else None
+
+
+def _wrong_view(values: tuple[Any, ...], boxes: list[tuple[int, ...] | None]) -> str:
+    number, xmin, ymin, xmax, ymax = values
+    # Written out: this runs 168 times a frame, and a loop over the five takes as long as parsing the JSON.
+    if not (type(number) is type(xmin) is type(ymin) is type(xmax) is type(ymax) is int):
+        return f"{shown(values)} are not five integers"
+    if not 0 <= number < len(boxes):
+        return f"viewNum is {shown(number)} instead of 0 to {len(boxes) - 1}"
+    if boxes[number] is not None:
+        return f"viewNum {number} is there twice"
+    if not (-MOST_ID <= xmin <= xmax <= MOST_ID and -MOST_ID <= ymin <= ymax <= MOST_ID):
+        return f"the box {shown(values[1:])} has its corners exchanged or too far away"
+    return ""
