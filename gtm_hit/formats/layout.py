@@ -60,8 +60,8 @@ def find_layout(
     `annotation_offset` None means 1 for MultiviewX, whose annotation 00001 belongs to image 0000, and 0 for
     everything else. With `calibrated` false no calibration is asked for.
 
-    Raises FormatError with everything missing, surplus, ambiguous, or leading out of the folder; with a list of
-    `problems` given, adds to that instead, and the layout has what could be found.
+    Raises FormatError with everything missing, surplus, ambiguous, or leading out of the folder; with a list
+    of `problems` given, adds to that instead, and the layout has what could be found.
     """
     found = ProblemList(root) if problems is None else problems
     layout = _find_layout(root, images, annotation_offset, calibrated, calibrations, annotations, found)
