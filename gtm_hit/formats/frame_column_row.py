@@ -1,0 +1,112 @@
+"""`frame column row` text, one person per line: what MVDet and the evaluation tools around it exchange.
+
+Columns and rows are those of the grid. A fourth value, the person, makes identities comparable. Lines may end
+with a comment after `#`; numbers may be written as numpy writes them (`3.000e+00`).
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gtm_hit.formats.files import read_source, write_bytes
+from gtm_hit.formats.problems import ProblemList, shown
+
+MOST_BYTES = 512 * 2**20
+MOST = 2**31 - 1  # what a frame, column, row or person may be
+_NAMES = ("frame", "column", "row", "person")
+_NUMBER = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
+
+Ids = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class FrameColumnRow:
+    """One row per person and frame, in the order of the file."""
+
+    frames: Ids  # (N,)
+    columns: Ids  # (N,)
+    rows: Ids  # (N,)
+    persons: Ids | None = None  # (N,)
+
+
+def read(path: Path, *, persons: bool = False, may_be_empty: bool = False) -> FrameColumnRow:
+    """All lines of the file; raises FormatError naming every line that is wrong.
+
+    With `persons` every line must have the fourth value; without it the fourth value is ignored where all
+    lines have one. `may_be_empty` is for a program's detections: it may have found nobody.
+    """
+    problems = ProblemList(path)
+    lines = [] if may_be_empty and _is_empty(path) else _lines(read_source(path, MOST_BYTES))
+    lengths = {len(words) for _, words in lines}
+    if not (lines or may_be_empty):
+        problems.add("", "holds no `frame column row` line")
+    if persons and lengths == {3}:
+        problems.add("", "no line has a person, the fourth value")
+        problems.raise_if_any()
+    expected = 4 if persons or lengths == {4} else 3
+    values = [_values(number, words, expected, problems) for number, words in lines]
+    if persons:
+        _report_repeated(lines, values, problems)
+    problems.raise_if_any()
+    table = np.array(values, dtype=np.int64).reshape(-1, expected)
+    return FrameColumnRow(table[:, 0], table[:, 1], table[:, 2], table[:, 3] if persons else None)
+
+
+def write(path: Path, table: FrameColumnRow) -> None:
+    parts = [table.frames, table.columns, table.rows]
+    rows = np.column_stack([*parts, table.persons] if table.persons is not None else parts)
+    write_bytes(path, "".join(" ".join(map(str, row)) + "\n" for row in rows.tolist()).encode())
+
+
+def _is_empty(path: Path) -> bool:
+    try:
+        return path.is_file() and not path.stat().st_size
+    except OSError:
+        return False  # whoever reads it says what is wrong
+
+
+def _lines(data: bytes) -> list[tuple[int, list[bytes]]]:
+    """Line numbers, counted from 1, and the words of every line that has any."""
+    found = []
+    for number, line in enumerate(data.removeprefix(b"\xef\xbb\xbf").splitlines(), start=1):
+        words = line.partition(b"#")[0].split()
+        if words:
+            found.append((number, words))
+    return found
+
+
+def _values(number: int, words: list[bytes], expected: int, problems: ProblemList) -> list[int]:
+    place = f"line {number}"
+    if len(words) != expected:
+        wanted = " ".join(_NAMES[:expected])
+        problems.add(place, f"{len(words)} values instead of {expected} ({wanted})")
+        return [0] * expected
+    return [_whole(place, name, word, problems) for name, word in zip(_NAMES, words, strict=False)]
+
+
+def _whole(place: str, name: str, word: bytes, problems: ProblemList) -> int:
+    if word.isdigit() and len(word) < 10:
+        return int(word)
+    value = float(word) if _NUMBER.fullmatch(word) else float("nan")
+    if value.is_integer() and 0 <= value <= MOST:
+        return int(value)
+    text = shown(word.decode("ascii", "backslashreplace"))
+    problems.add(place, f"{name} is not a whole number from 0 to {MOST}: {text}")
+    return 0
+
+
+def _report_repeated(
+    lines: list[tuple[int, list[bytes]]], values: list[list[int]], problems: ProblemList
+) -> None:
+    if problems:
+        return  # placeholders of bad lines would look like repetitions
+    first: dict[tuple[int, int], int] = {}
+    for (number, _), (frame, _column, _row, person) in zip(lines, values, strict=True):
+        earlier = first.setdefault((frame, person), number)
+        if earlier != number:
+            problems.add(f"line {number}", f"person {person} is already in frame {frame} on line {earlier}")
