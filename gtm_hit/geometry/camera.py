@@ -1,20 +1,21 @@
-"""A calibrated static camera and the validity of its numbers."""
+"""A calibrated static camera: world to pixels, and back to the ground."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gtm_hit.geometry import lens
 
 Floats = NDArray[np.float64]
 
 DISTORTION_LENGTHS = (4, 5, 8, 12, 14)  # the lengths OpenCV's model comes in
+STEEP = 0.1  # below this share of "up" in the image, a camera counts as looking straight down or up
 
 
 class CalibrationError(ValueError):
@@ -48,7 +49,7 @@ class Camera:
     def _numbers(self, name: str, shape: tuple[int, ...] | None) -> Floats:
         try:
             values = np.array(getattr(self, name), dtype=np.float64)
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, OverflowError) as error:
             raise CalibrationError(f"{self.name}: {name} is not an array of numbers") from error
         if shape is None or shape == (3,):
             values = values.reshape(-1)
@@ -90,6 +91,15 @@ class Camera:
     def tilt(self) -> Floats | None:
         return lens.tilt_matrix(self.distortion)
 
+    @cached_property
+    def facing(self) -> int:
+        """Sign of the depth of what the camera sees: -1 for the poses of left-handed worlds.
+
+        Told by the world's up pointing up in the image; where a camera looks straight down, by that.
+        """
+        down, away = self.rotation[1, 2], self.rotation[2, 2]
+        return -1 if (down if abs(down) > STEEP else away) > 0 else 1
+
     def as_json(self) -> dict[str, Any]:
         """What the browser's `Camera` is made from."""
         return {
@@ -101,4 +111,60 @@ class Camera:
             "rotation": self.rotation.tolist(),
             "tvec": self.tvec.tolist(),
             "distortion": self.distortion.tolist(),
+            "tilt": None if self.tilt is None else self.tilt.tolist(),
         }
+
+
+def project(camera: Camera, points: ArrayLike) -> Floats:
+    """Pixels u and v, (N, 2), of world points (N, 3) in metres, as cv2.projectPoints has them.
+
+    Points behind the camera are projected too; NaN for points in the camera plane.
+    """
+    (fx, _, cx), (_, fy, cy), _ = camera.matrix.tolist()
+    x, y, z = (np.asarray(points, dtype=np.float64).reshape(-1, 3) @ camera.rotation.T + camera.tvec).T
+    with np.errstate(all="ignore"):
+        scale = np.where(z == 0, np.nan, 1 / z)
+        x, y = x * scale, y * scale
+        if camera.has_lens:
+            x, y = lens.distort(x, y, camera.distortion, camera.tilt)
+    return np.column_stack((x * fx + cx, y * fy + cy))
+
+
+def normalise(camera: Camera, pixels: ArrayLike) -> Floats:
+    """Directions x/z and y/z, (N, 2), of pixels (N, 2) with the lens taken out.
+
+    NaN for pixels nothing lands on: outside the picture a strong lens folds back.
+    """
+    (fx, _, cx), (_, fy, cy), _ = camera.matrix.tolist()
+    u, v = np.asarray(pixels, dtype=np.float64).reshape(-1, 2).T
+    x, y = (u - cx) / fx, (v - cy) / fy
+    if camera.has_lens:
+        x, y = lens.undistort(x, y, camera.distortion, camera.tilt)
+    return np.column_stack((x, y))
+
+
+def back_project(camera: Camera, pixels: ArrayLike, z: float = 0.0) -> Floats:
+    """Ground X and Y, (N, 2) metres, at height `z` of what pixels (N, 2) show: the inverse of `project`.
+
+    NaN above the horizon, where the ray meets that height behind the camera, and outside the lens's limit.
+    """
+    directions = normalise(camera, pixels)
+    rays = np.column_stack((directions, np.ones(len(directions)))) @ camera.rotation
+    with np.errstate(all="ignore"):
+        depth = (z - camera.centre[2]) / rays[:, 2]
+        ground = camera.centre[:2] + depth[:, None] * rays[:, :2]
+    seen = np.isfinite(depth) & (depth * camera.facing > 0)
+    return np.where(seen[:, None], ground, np.nan)
+
+
+def undistorted(camera: Camera, target_matrix: ArrayLike | None = None) -> Camera:
+    """The camera of the images that `undistort_maps` makes; the same matrix unless another is given."""
+    matrix = camera.matrix if target_matrix is None else np.asarray(target_matrix, dtype=np.float64)
+    return replace(camera, matrix=matrix, distortion=np.zeros(5))
+
+
+def undistort_maps(camera: Camera, target_matrix: ArrayLike | None = None) -> tuple[NDArray, NDArray]:
+    """The two maps with which cv2.remap takes the lens out of the camera's images."""
+    target = undistorted(camera, target_matrix).matrix
+    size = (camera.width, camera.height)
+    return cv2.initUndistortRectifyMap(camera.matrix, camera.distortion, None, target, size, cv2.CV_16SC2)

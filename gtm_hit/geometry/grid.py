@@ -68,17 +68,17 @@ class Grid:
         -1 where the point is more than half a step outside the grid or NaN: ids are integers and have no NaN.
         """
         cells = self._cells(xy)
-        inside: NDArray[np.bool_] = np.logical_and(cells >= 0, cells < (self.columns, self.rows)).all(axis=1)
-        columns, rows = np.where(inside[:, None], cells, 0.0).astype(np.int64).T
-        return np.where(inside, rows * self.columns + columns, -1)
+        inside = np.all((cells >= 0) & (cells < (self.columns, self.rows)), axis=1, keepdims=True)
+        columns, rows = np.where(inside, cells, 0.0).astype(np.int64).T
+        return np.where(inside[:, 0], rows * self.columns + columns, -1)
 
     def nearest(self, xy: ArrayLike) -> Ids:
         """Nearest position, (N,), of ground points (N, 2) wherever they are; -1 only for NaN."""
         cells = self._cells(xy)
-        known: NDArray[np.bool_] = np.logical_not(np.isnan(cells).any(axis=1))
-        clamped = np.clip(np.where(known[:, None], cells, 0.0), 0, (self.columns - 1, self.rows - 1))
+        known = np.logical_not(np.isnan(cells).any(axis=1, keepdims=True))
+        clamped = np.clip(np.where(known, cells, 0.0), 0, (self.columns - 1, self.rows - 1))
         columns, rows = clamped.astype(np.int64).T
-        return np.where(known, rows * self.columns + columns, -1)
+        return np.where(known[:, 0], rows * self.columns + columns, -1)
 
     def check(self, positions: Ids) -> None:
         """Raise GridError for the first position that is not on the grid."""

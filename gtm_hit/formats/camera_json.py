@@ -1,0 +1,113 @@
+"""Cameras in one plain JSON file, the project's own calibration format.
+
+    {
+      "format": "gtm-cameras",
+      "version": 1,
+      "cameras": [
+        {
+          "name": "C1",
+          "width": 1920, "height": 1080,               pixels
+          "matrix": [[fx,0,cx],[0,fy,cy],[0,0,1]],     pixels
+          "rvec": [3 numbers],                         radians, world to camera, OpenCV
+          "tvec": [3 numbers],                         metres, world to camera, OpenCV
+          "distortion": [4, 5, 8, 12 or 14 numbers],   OpenCV's order; may be left out: no lens
+          "original": {"matrix": …, "distortion": …}   may be left out: as the camera saw it,
+        }                                              where the above describes undistorted images
+      ]
+    }
+
+Cameras are numbered in the order of the list. Keys not named here are ignored.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from gtm_hit.formats.files import read_source, write_bytes
+from gtm_hit.formats.problems import FormatError, Problem, ProblemList, shown
+from gtm_hit.geometry.camera import CalibrationError, Camera
+
+FORMAT, VERSION = "gtm-cameras", 1
+MOST_BYTES = 10_000_000
+NO_LENS = [0.0] * 5
+
+
+def load_cameras(path: Path, original: bool = False) -> list[Camera]:
+    """Cameras of the images as annotated or, if `original`, of the images as the cameras saw them.
+
+    FormatError with everything that is wrong; with `original`, that includes a camera without such numbers.
+    """
+    problems = ProblemList(path)
+    cameras: list[Camera] = []
+    for index, facts in enumerate(_entries(path)):
+        place = f"cameras[{index}]"
+        try:
+            cameras.append(_camera(index, facts, original))
+        except KeyError as error:
+            problems.add(place, f"{error.args[0]} is missing")
+        except (CalibrationError, TypeError) as error:
+            problems.add(place, str(error))
+    names = [camera.name for camera in cameras]
+    for name in sorted({name for name in names if names.count(name) > 1}):
+        problems.add("cameras", f"more than one is named {shown(name)}")
+    problems.raise_if_any()
+    return cameras
+
+
+def save_cameras(path: Path, cameras: Sequence[Camera]) -> None:
+    """Write cameras so that `load_cameras` gives the same numbers back."""
+    entries = [
+        {
+            "name": camera.name,
+            "width": camera.width,
+            "height": camera.height,
+            "matrix": camera.matrix.tolist(),
+            "rvec": camera.rvec.tolist(),
+            "tvec": camera.tvec.tolist(),
+            "distortion": camera.distortion.tolist(),
+        }
+        for camera in cameras
+    ]
+    text = json.dumps({"format": FORMAT, "version": VERSION, "cameras": entries}, indent=2)
+    write_bytes(path, text.encode() + b"\n")
+
+
+def _entries(path: Path) -> list[Any]:
+    try:
+        content = json.loads(read_source(path, MOST_BYTES))
+    except (ValueError, RecursionError) as error:
+        raise FormatError([Problem(str(path), "", f"not JSON: {error}")]) from error
+    if not isinstance(content, dict) or (content.get("format"), content.get("version")) != (FORMAT, VERSION):
+        reason = f'no object with "format": "{FORMAT}" and "version": {VERSION}'
+        raise FormatError([Problem(str(path), "", reason)])
+    entries = content.get("cameras")
+    if not isinstance(entries, list) or not entries:
+        raise FormatError([Problem(str(path), "cameras", "not a list of at least one camera")])
+    return entries
+
+
+def _camera(index: int, facts: Any, original: bool) -> Camera:
+    """KeyError, TypeError or CalibrationError when the facts make no camera."""
+    lens = _of_type(facts, "original", dict) if original else facts
+    return Camera(
+        index=index,
+        name=_of_type(facts, "name", str),
+        width=_of_type(facts, "width", int),
+        height=_of_type(facts, "height", int),
+        matrix=lens["matrix"],
+        rvec=facts["rvec"],
+        tvec=facts["tvec"],
+        distortion=lens.get("distortion", NO_LENS),
+    )
+
+
+def _of_type(facts: Any, key: str, wanted: type) -> Any:
+    if not isinstance(facts, dict):
+        raise TypeError(f"not an object: {shown(facts)}")
+    value = facts[key]
+    if not isinstance(value, wanted) or isinstance(value, bool):
+        raise TypeError(f"{key} is {shown(value)}, not {wanted.__name__}")
+    return value
