@@ -1,5 +1,41 @@
 from __future__ import annotations
 
-from django.urls import URLPattern, URLResolver
+from django.urls import URLPattern, URLResolver, include, path, re_path
+from drf_spectacular.views import SpectacularAPIView, SpectacularSwaggerView
 
-urlpatterns: list[URLPattern | URLResolver] = []
+# Importing it tells drf-spectacular about the tokens.
+from gtm_hit.api import frames, schema, tutorial  # noqa: F401
+from gtm_hit.api.images import ImageView
+from gtm_hit.api.missing import MissingView
+from gtm_hit.api.submission import SubmitView
+
+assignment = [
+    path("scene/", frames.AssignmentScene.as_view()),
+    path("frames/", frames.AssignmentFrames.as_view()),
+    path("frames/<int:number>/", frames.AssignmentFrame.as_view()),
+    path("frames/<int:number>/history/", frames.AssignmentHistory.as_view()),
+    path("submit/", SubmitView.as_view()),
+]
+layer = [
+    path("scene/", frames.LayerScene.as_view()),
+    path("frames/", frames.LayerFrames.as_view()),
+    path("frames/<int:number>/", frames.LayerFrameView.as_view()),
+    path("frames/<int:number>/history/", frames.LayerHistory.as_view()),
+]
+learning = [
+    path("scene/", tutorial.TutorialScene.as_view()),
+    path("frames/", tutorial.TutorialFrames.as_view()),
+    path("frames/<int:number>/", tutorial.TutorialFrame.as_view()),
+    path("check/", tutorial.TutorialCheck.as_view()),
+    path("done/", tutorial.TutorialDone.as_view()),
+]
+
+urlpatterns: list[URLPattern | URLResolver] = [
+    path("assignment/", include(assignment)),
+    path("layers/<int:layer>/", include(layer)),
+    path("tutorial/", include(learning)),
+    re_path(r"^images/(?P<digest>[0-9a-f]{64})\.jpg$", ImageView.as_view()),
+    path("schema/", SpectacularAPIView.as_view(), name="schema"),
+    path("docs/", SpectacularSwaggerView.as_view(url_name="schema"), name="docs"),
+    re_path("", MissingView.as_view()),
+]

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from datetime import datetime, timedelta
+from typing import Any
 
 from django.conf import settings
 from django.db import IntegrityError, transaction
-from django.db.models import Exists, OuterRef, QuerySet
+from django.db.models import Count, Exists, OuterRef, Q, QuerySet, Sum
 from django.utils import timezone
+from django.utils.translation import gettext as _
 
 from gtm_hit.models import Assignment, Batch, Dataset, Frame, Layer, Worker
 from gtm_hit.models.work import completion_code
@@ -156,6 +158,16 @@ def read_only_reason(assignment: Assignment) -> str:
     return "expired" if assignment.state in {State.LEASED, State.EXPIRED} else "submitted"
 
 
+def explained(reason: str) -> str:
+    """A `read_only_reason` in plain words; empty for empty."""
+    texts = {
+        "submitted": _("This batch is submitted; it can be looked at, not changed."),
+        "expired": _("The time for this batch has run out. Open your start page to continue with it."),
+        "not_author": _("A worker's annotations are changed by that worker only."),
+    }
+    return texts.get(reason, reason)
+
+
 def extend(assignment: Assignment) -> None:
     """Activity keeps a lease alive."""
     Assignment.objects.filter(pk=assignment.pk, state=State.LEASED).update(expires_at=lease_end())
@@ -184,3 +196,18 @@ def unfinished_frames(assignment: Assignment) -> list[int]:
     done = assignment.layer.layer_frames.filter(done=True).values("frame")
     missing = Frame.objects.filter(batches=assignment.batch_id).exclude(pk__in=done)
     return list(missing.order_by("number").values_list("number", flat=True))
+
+
+def summary(assignment: Assignment) -> dict[str, Any]:
+    """What the worker did: frames, people per frame, active minutes."""
+    frames = Frame.objects.filter(batches=assignment.batch_id).order_by("number")
+    people = Count("annotations", filter=Q(annotations__layer=assignment.layer_id))
+    counts = dict(frames.annotate(people=people).values_list("number", "people"))
+    seconds = assignment.layer.layer_frames.aggregate(total=Sum("seconds"))["total"] or 0
+    return {
+        "batch": str(assignment.batch),
+        "frames": [{"number": number, "people": count} for number, count in counts.items()],
+        "annotations": sum(counts.values()),
+        "minutes": round(seconds / 60, 1),
+        "submitted_at": assignment.submitted_at,
+    }

@@ -1,0 +1,76 @@
+"""What the workbench needs to know before it can draw: one answer, a fixed number of queries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, LayerFrame
+
+
+def dataset_part(dataset: Dataset) -> dict[str, Any]:
+    """Grid, cylinder and cameras, metres and pixels."""
+    grid = dataset.grid
+    return {
+        "dataset": {
+            "slug": dataset.slug,
+            "name": dataset.name,
+            "seconds_per_frame": dataset.seconds_per_frame,
+        },
+        "grid": {
+            "columns": grid.columns,
+            "rows": grid.rows,
+            "step": grid.step,
+            "origin": [grid.origin_x, grid.origin_y],
+        },
+        "cylinder": {"radius": dataset.cylinder_radius, "height": dataset.cylinder_height},
+        "foot_rule": dataset.foot_rule,
+        "cameras": [camera_part(camera) for camera in dataset.cameras.order_by("index")],
+    }
+
+
+def camera_part(camera: Camera) -> dict[str, Any]:
+    calibrated = camera.calibrated
+    return {
+        "index": camera.index,
+        "name": camera.name,
+        "width": camera.width,
+        "height": camera.height,
+        "matrix": calibrated.matrix.tolist(),
+        "rotation": calibrated.rotation.tolist(),
+        "tvec": calibrated.tvec.tolist(),
+        "distortion": calibrated.distortion.tolist(),
+    }
+
+
+def frames_part(frames: Iterable[Frame], heads: dict[int, dict[str, Any]]) -> list[dict[str, Any]]:
+    """The frames with their images; `heads` holds revision, done and nobody by frame id."""
+    frames = list(frames)
+    images: dict[int, list[dict[str, Any]]] = {frame.pk: [] for frame in frames}
+    rows = Image.objects.filter(frame__in=list(images)).order_by("camera__index")
+    fields = ("frame_id", "camera__index", "light_digest", "full_digest")
+    for frame_id, camera, light, full in rows.values_list(*fields):
+        images[frame_id].append({"camera": camera, "light": image_url(light), "full": image_url(full)})
+    untouched = head_part(LayerFrame())
+    return [
+        {"number": frame.number, "images": images[frame.pk], **heads.get(frame.pk, untouched)}
+        for frame in frames
+    ]
+
+
+def head_part(head: LayerFrame) -> dict[str, Any]:
+    return {"revision": head.revision, "done": head.done, "nobody": head.nobody}
+
+
+def image_url(digest: str) -> str:
+    return f"/api/v1/images/{digest}.jpg"
+
+
+def assignment_part(assignment: Assignment | None) -> dict[str, Any] | None:
+    if assignment is None:
+        return None
+    return {
+        "state": assignment.state,
+        "expires_at": assignment.expires_at,
+        "batch": str(assignment.batch),
+    }

@@ -1,0 +1,35 @@
+"""How the signed tokens appear in the OpenAPI description."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from drf_spectacular.extensions import OpenApiAuthenticationExtension
+
+
+class AssignmentScheme(OpenApiAuthenticationExtension):
+    target_class = "gtm_hit.api.authentication.AssignmentAuthentication"
+    name = "assignment"
+
+    def get_security_definition(self, auto_schema: Any) -> dict[str, str]:
+        return header("`Assignment <token>`, from the worker's link")
+
+
+class WorkerScheme(OpenApiAuthenticationExtension):
+    target_class = "gtm_hit.api.authentication.WorkerAuthentication"
+    name = "worker"
+
+    def get_security_definition(self, auto_schema: Any) -> dict[str, str]:
+        return header("`Worker <token>`, from the worker's start page")
+
+
+class StaffScheme(OpenApiAuthenticationExtension):
+    target_class = "gtm_hit.api.authentication.StaffSession"
+    name = "staff"
+
+    def get_security_definition(self, auto_schema: Any) -> dict[str, str]:
+        return {"type": "apiKey", "in": "cookie", "name": "sessionid"}
+
+
+def header(description: str) -> dict[str, str]:
+    return {"type": "apiKey", "in": "header", "name": "Authorization", "description": description}

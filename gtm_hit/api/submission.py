@@ -1,0 +1,32 @@
+"""The end of an assignment."""
+
+from __future__ import annotations
+
+from drf_spectacular.utils import extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from gtm_hit.api.frames import REFUSALS, refusal
+from gtm_hit.api.parsing import BoundedJSONParser
+from gtm_hit.api.places import AssignmentPlace
+from gtm_hit.api.serializers import SubmittedSerializer
+from gtm_hit.ops import assignments
+
+
+class SubmitView(AssignmentPlace):
+    parser_classes = [BoundedJSONParser]
+
+    @extend_schema(
+        summary="Submit the batch",
+        description="Only when every frame is done on the server's record. Again: the same code.",
+        request=None,
+        responses={
+            200: SubmittedSerializer,
+            403: refusal("read_only; details.reason: expired"),
+            409: refusal("unfinished; details.frames: numbers"),
+            **REFUSALS,
+        },
+    )
+    def post(self, request: Request) -> Response:
+        submitted = assignments.submit(self.assignment)
+        return Response({"code": submitted.code, "summary": assignments.summary(submitted)})

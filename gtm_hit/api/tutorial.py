@@ -1,0 +1,88 @@
+"""The tutorial: prepared frames, steps judged on the server."""
+
+from __future__ import annotations
+
+from django.http import Http404
+from drf_spectacular.utils import extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from gtm_hit.api import scene
+from gtm_hit.api.frames import REFUSALS, refusal, valid
+from gtm_hit.api.parsing import BoundedJSONParser
+from gtm_hit.api.places import TutorialPlace
+from gtm_hit.api.serializers import (
+    CheckSerializer,
+    FrameStateSerializer,
+    FrameStatesSerializer,
+    SceneSerializer,
+    TutorialDoneSerializer,
+    VerdictSerializer,
+)
+from gtm_hit.ops import tutorial
+
+
+class TutorialScene(TutorialPlace):
+    @extend_schema(summary="The tutorial's scene", responses={200: SceneSerializer, **REFUSALS})
+    def get(self, request: Request) -> Response:
+        loaded = tutorial.load()
+        heads = {frame.pk: {"revision": 1, "done": False, "nobody": False} for frame in loaded.frames}
+        return Response(
+            {
+                "mode": "tutorial",
+                **scene.dataset_part(loaded.dataset),
+                "frames": scene.frames_part(loaded.frames, heads),
+                "layer": {"id": 0, "name": "tutorial"},
+                "editable": True,
+                "read_only_reason": "",
+                "assignment": None,
+                "next_person": loaded.exercise.next_person,
+            }
+        )
+
+
+class TutorialFrames(TutorialPlace):
+    @extend_schema(
+        operation_id="tutorial_frames_list",
+        summary="The tutorial's prepared frames",
+        responses={200: FrameStatesSerializer, **REFUSALS},
+    )
+    def get(self, request: Request) -> Response:
+        return Response({"frames": [state.as_dict() for state in tutorial.load().states()]})
+
+
+class TutorialFrame(TutorialPlace):
+    @extend_schema(
+        summary="One of the tutorial's prepared frames", responses={200: FrameStateSerializer, **REFUSALS}
+    )
+    def get(self, request: Request, number: int) -> Response:
+        for state in tutorial.load().states():
+            if state.number == number:
+                return Response(state.as_dict())
+        raise Http404
+
+
+class TutorialCheck(TutorialPlace):
+    parser_classes = [BoundedJSONParser]
+
+    @extend_schema(
+        summary="Judge a step",
+        request=CheckSerializer,
+        responses={200: VerdictSerializer, 400: refusal("invalid"), **REFUSALS},
+    )
+    def post(self, request: Request) -> Response:
+        wanted = valid(CheckSerializer(data=request.data))
+        verdict = tutorial.check(self.worker, wanted["step"], wanted["frame"], wanted["annotations"])
+        return Response({"ok": verdict.ok, "message": verdict.message})
+
+
+class TutorialDone(TutorialPlace):
+    parser_classes = [BoundedJSONParser]
+
+    @extend_schema(
+        summary="Finish the tutorial",
+        request=None,
+        responses={200: TutorialDoneSerializer, 409: refusal("unfinished; details.steps"), **REFUSALS},
+    )
+    def post(self, request: Request) -> Response:
+        return Response({"done_at": tutorial.finish(self.worker).tutorial_done_at})

@@ -1,0 +1,125 @@
+"""What the tutorial gets wrong on purpose. Pure: true people in, prepared people out, always the same."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gtm_hit.geometry.grid import Grid
+
+SHIFT = 0.40  # metres the misplaced person stands off
+LONELY = 1.0  # metres around the invented person where nobody is
+SPACING = 0.5  # metres between the places tried for the invented person
+
+Positions = dict[int, int]
+"""Position by person."""
+
+Views = Callable[[list[int]], NDArray[np.int64]]
+"""In how many cameras each position is visible, (N,)."""
+
+
+class TooFewPeople(ValueError):
+    """Frames in which the tutorial's mistakes cannot be made."""
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """Three frames: the first with three mistakes, the second with two people where they were before."""
+
+    numbers: list[int]
+    truth: list[Positions]
+    missing: int  # in the truth of the first frame, not shown
+    shifted: int  # shown `SHIFT` metres off, carried over
+    shifted_to: int
+    invented: int  # shown where nobody is
+    invented_at: int
+    carried: list[int]  # shown in the second frame where they were in the first
+
+    def shown(self, index: int) -> Positions:
+        people = dict(self.truth[index])
+        if index == 0:
+            del people[self.missing]
+            people |= {self.shifted: self.shifted_to, self.invented: self.invented_at}
+        if index == 1:
+            people |= {person: self.truth[0][person] for person in self.carried}
+        return people
+
+    def yellow(self, index: int) -> set[int]:
+        return {0: {self.shifted}, 1: set(self.carried)}.get(index, set())
+
+    @property
+    def next_person(self) -> int:
+        return max(self.invented, *(person for people in self.truth for person in people)) + 1
+
+
+def make_exercise(numbers: list[int], truth: list[Positions], grid: Grid, views: Views) -> Exercise:
+    """Raises TooFewPeople."""
+    first, second = truth[0], truth[1]
+    if len(truth) != 3 or len(first) < 3 or len(first.keys() & second.keys()) < 2:
+        raise TooFewPeople("the tutorial needs three frames and three people")
+    missing, shifted = clearest(first, grid, views)[:2]
+    draft = Exercise(
+        numbers=numbers,
+        truth=truth,
+        missing=missing,
+        shifted=shifted,
+        shifted_to=beside(shifted, first, grid),
+        invented=max(person for people in truth for person in people) + 1,
+        invented_at=0,
+        carried=walkers(first, second, grid, views)[:2],
+    )
+    return replace(draft, invented_at=empty_place(first, grid, views))
+
+
+def clearest(people: Positions, grid: Grid, views: Views) -> list[int]:
+    """People easiest to judge first: seen by many cameras, far from everybody else."""
+    persons = sorted(people)
+    places = [people[person] for person in persons]
+    apart = between(places, places, grid)
+    np.fill_diagonal(apart, np.inf)
+    nearest = np.minimum(apart.min(axis=1), 2.0)
+    order = np.lexsort((np.array(persons), -nearest, -views(places)))
+    return [persons[index] for index in order]
+
+
+def walkers(before: Positions, after: Positions, grid: Grid, views: Views) -> list[int]:
+    """People of both frames, those first whom many cameras see and who moved most."""
+    persons = sorted(before.keys() & after.keys())
+    places = [after[person] for person in persons]
+    moved = np.diag(between([before[person] for person in persons], places, grid))
+    order = np.lexsort((np.array(persons), -moved, -views(places)))
+    return [persons[index] for index in order]
+
+
+def beside(person: int, people: Positions, grid: Grid) -> int:
+    """A position `SHIFT` metres away, on the side where nobody is near."""
+    here = grid.metres([people[person]])[0]
+    angles = np.arange(8) * np.pi / 4
+    candidates = grid.position(here + SHIFT * np.column_stack((np.cos(angles), np.sin(angles))))
+    candidates = candidates[candidates >= 0]
+    others = [place for other, place in people.items() if other != person]
+    room = between(candidates.tolist(), others, grid).min(axis=1)
+    return int(candidates[np.argmax(room)])
+
+
+def empty_place(people: Positions, grid: Grid, views: Views) -> int:
+    """A position amid the people, well seen, with nobody within `LONELY` metres if there is such a place."""
+    points = grid.metres(list(people.values()))
+    low, high = points.min(axis=0), points.max(axis=0)
+    axes = [np.arange(low[axis], high[axis] + SPACING, SPACING) for axis in (0, 1)]
+    tried = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
+    candidates = np.unique(grid.nearest(tried))
+    room = between(candidates.tolist(), list(people.values()), grid).min(axis=1)
+    lonely = candidates[room >= LONELY]
+    if not len(lonely):
+        return int(candidates[np.argmax(room)])
+    middle = np.linalg.norm(grid.metres(lonely) - points.mean(axis=0), axis=1)
+    return int(lonely[np.lexsort((middle, -views(lonely.tolist())))[0]])
+
+
+def between(ours: list[int], others: list[int], grid: Grid) -> NDArray[np.float64]:
+    """Ground distances in metres, (ours, others)."""
+    return np.linalg.norm(grid.metres(ours)[:, None] - grid.metres(others)[None], axis=2)
