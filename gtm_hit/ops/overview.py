@@ -65,7 +65,7 @@ class BatchCounts:
     leased: int
     submitted: int
     accepted: int
-    frames: int
+    frames_without: int  # frames in no batch
 
 
 def batch_counts(dataset: Dataset) -> BatchCounts:
@@ -82,7 +82,7 @@ def batch_counts(dataset: Dataset) -> BatchCounts:
         leased=states.get("leased", 0) + states.get("returned", 0),
         submitted=states.get("submitted", 0),
         accepted=states.get("accepted", 0),
-        frames=Frame.objects.filter(batches__dataset=dataset).distinct().count(),
+        frames_without=dataset.frames.filter(batches__isnull=True).count(),
     )
 
 

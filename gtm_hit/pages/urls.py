@@ -2,4 +2,10 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-urlpatterns: list[URLPattern | URLResolver] = []
+from gtm_hit.pages import batches, datasets, home
+
+urlpatterns: list[URLPattern | URLResolver] = [
+    *home.urlpatterns,
+    *datasets.urlpatterns,
+    *batches.urlpatterns,
+]

@@ -1,0 +1,52 @@
+from __future__ import annotations
+
+from django import forms
+from django.contrib import messages
+from django.core.paginator import Paginator
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import redirect, render
+from django.urls import path, reverse
+from django.utils.translation import gettext_lazy, ngettext
+from django.views.decorators.http import require_http_methods
+
+from gtm_hit.ops import batches, overview, tokens
+from gtm_hit.pages.access import staff_only
+from gtm_hit.pages.datasets import summary_or_404
+
+ROWS_PER_PAGE = 100
+
+
+class MakeBatchesForm(forms.Form):
+    size = forms.IntegerField(
+        label=gettext_lazy("Frames per batch"), min_value=1, max_value=batches.MAX_SIZE, initial=10
+    )
+    copies = forms.IntegerField(
+        label=gettext_lazy("Opinions per frame"), min_value=1, max_value=batches.MAX_COPIES, initial=1
+    )
+
+
+@require_http_methods(["GET", "HEAD", "POST"])
+@staff_only
+def dataset_batches(request: HttpRequest, slug: str) -> HttpResponse:
+    summary = summary_or_404(slug)
+    form = MakeBatchesForm(request.POST or None)
+    if request.method == "POST" and form.is_valid():
+        added = batches.make_batches(summary.dataset, **form.cleaned_data)
+        text = ngettext("%(count)d batch was added.", "%(count)d batches were added.", added)
+        messages.success(request, text % {"count": added})
+        return redirect("dataset-batches", slug=slug)
+    page = Paginator(overview.batches(summary.dataset), ROWS_PER_PAGE).get_page(request.GET.get("page"))
+    context = {
+        "section": "datasets",
+        "tab": "batches",
+        "dataset": summary.dataset,
+        "counts": overview.batch_counts(summary.dataset),
+        "page": page,
+        "rows": overview.with_assignments(page.object_list),
+        "form": form,
+        "entry_link": request.build_absolute_uri(reverse("join", args=[tokens.entry_token(summary.dataset)])),
+    }
+    return render(request, "staff/batches.html", context)
+
+
+urlpatterns = [path("datasets/<slug:slug>/batches/", dataset_batches, name="dataset-batches")]
