@@ -1,0 +1,155 @@
+"""What an import is told: where the files are, and what the files do not say."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TypedDict
+
+from django.core.exceptions import ValidationError
+
+from gtm_hit.formats.problems import ProblemList, shown
+from gtm_hit.geometry.cylinder import FootRule
+from gtm_hit.models import Dataset, Layer
+
+
+class SceneValues(TypedDict, total=False):
+    """Fields of Dataset that no file states; the dataset, the preset or a default give what is left out."""
+
+    columns: int
+    rows: int
+    step: float
+    origin_x: float
+    origin_y: float
+    cylinder_radius: float
+    cylinder_height: float
+    foot_rule: str
+    frame_rate: float
+    frame_step: int
+    annotation_offset: int
+    annotation_digits: int
+
+
+@dataclass(frozen=True)
+class Preset:
+    tvec_unit: str
+    values: SceneValues
+
+
+PRESETS = {
+    "wildtrack": Preset(
+        "cm",
+        SceneValues(
+            columns=480,
+            rows=1440,
+            step=0.025,
+            origin_x=-3.0,
+            origin_y=-9.0,
+            cylinder_radius=0.16,
+            cylinder_height=1.8,
+            foot_rule=FootRule.CORNERS.value,
+            frame_rate=10.0,
+            frame_step=5,
+            annotation_offset=0,
+            annotation_digits=8,
+        ),
+    ),
+    "multiviewx": Preset(
+        "m",
+        SceneValues(
+            columns=1000,
+            rows=640,
+            step=0.025,
+            origin_x=0.0,
+            origin_y=0.0,
+            cylinder_radius=0.16,
+            cylinder_height=1.8,
+            foot_rule=FootRule.CENTRE.value,
+            frame_rate=2.0,
+            frame_step=1,
+            annotation_offset=1,
+            annotation_digits=5,
+        ),
+    ),
+}
+
+DEFAULTS = SceneValues(
+    cylinder_radius=0.16,
+    cylinder_height=1.8,
+    foot_rule=FootRule.CORNERS.value,
+    frame_step=1,
+)
+
+# A wrong guess here would shift every position or change every speed without anybody noticing.
+REQUIRED = {
+    "columns": "--grid COLUMNSxROWS",
+    "step": "--step METRES",
+    "origin_x": "--origin X,Y",
+    "frame_rate": "--frame-rate NUMBERS_PER_SECOND",
+}
+
+
+@dataclass(frozen=True)
+class ImportOptions:
+    """`values` holds only what was given explicitly; folders are absolute, or seen from `folder`."""
+
+    slug: str
+    folder: Path
+    name: str = ""
+    preset: str | None = None
+    values: SceneValues = field(default_factory=lambda: SceneValues())
+    tvec_unit: str | None = None
+    images: Path | None = None
+    calibrations: Path | None = None
+    annotations: Path | None = None
+    undistort: bool = False
+    layer: str = "imported"
+    layer_kind: str = Layer.Kind.IMPORTED.value
+    hidden_layer: bool = False
+    keep_all_frames: bool = False
+
+    @property
+    def unit(self) -> str:
+        if self.tvec_unit:
+            return self.tvec_unit
+        return PRESETS[self.preset].tvec_unit if self.preset else "m"
+
+
+def scene(options: ImportOptions, existing: Dataset | None, problems: ProblemList) -> Dataset:
+    """An unsaved dataset with every value: given explicitly, else the existing one's, else preset or default.
+
+    What was given explicitly and contradicts the existing dataset is a problem, as is what nobody knows.
+    """
+    values: dict[str, object] = {**DEFAULTS}
+    if options.preset:
+        values.update(PRESETS[options.preset].values)
+    if existing is not None:
+        values.update({name: getattr(existing, name) for name in SceneValues.__annotations__})
+        _tell_contradictions(options, existing, problems)
+    values.update(options.values)
+    missing = [option for name, option in REQUIRED.items() if name not in values]
+    if missing:
+        problems.add("options", f"not known: {', '.join(missing)}; or choose a --preset")
+    dataset = Dataset(
+        slug=options.slug, name=options.name or options.slug, undistorted=options.undistort, **values
+    )
+    try:
+        dataset.full_clean(validate_unique=False)
+    except ValidationError as error:
+        for name, messages in error.message_dict.items():
+            problems.add("options", f"{name}: {' '.join(messages)}")
+    return dataset
+
+
+def _tell_contradictions(options: ImportOptions, existing: Dataset, problems: ProblemList) -> None:
+    for name, value in options.values.items():
+        if value != getattr(existing, name):
+            there = shown(getattr(existing, name))
+            problems.add("options", f"{name} is {there} in dataset {existing.slug}, not {shown(value)}")
+    if options.undistort != existing.undistorted:
+        problems.add(
+            "options",
+            f"the images of dataset {existing.slug} were imported with --undistort: give it again"
+            if existing.undistorted
+            else f"the images of dataset {existing.slug} were imported without --undistort",
+        )

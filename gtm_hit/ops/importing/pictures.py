@@ -1,0 +1,137 @@
+"""The images of an import: sizes from their headers, then every pixel decoded and made into derivatives."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+
+from django.core.files.storage import default_storage
+from django.db.models import Q
+
+from gtm_hit.formats.files import read_source
+from gtm_hit.formats.problems import FormatError, Problem, ProblemList
+from gtm_hit.models import Image
+from gtm_hit.ops import images
+from gtm_hit.ops.images import Derivatives, ImageError, Undistort
+
+MOST_THREADS = 8  # each holds one decoded picture several times over
+Key = tuple[int, int]
+"""Camera index and frame number."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One file to import; `known` is the digest of the file it was imported from before."""
+
+    key: Key
+    path: Path
+    undistort: Undistort | None = None
+    known: str | None = None
+
+
+def camera_sizes(
+    paths: Mapping[str, Mapping[int, Path]],
+    known: Mapping[str, tuple[int, int]],
+    problems: ProblemList,
+) -> dict[str, tuple[int, int]]:
+    """Width and height per camera: the known one, else the one most of its images have.
+
+    Images that cannot be read or differ are problems.
+    """
+    sizes = {}
+    for camera, by_number in paths.items():
+        found = _sizes(by_number.values(), problems)
+        if camera not in known and not found:
+            continue
+        size = known.get(camera) or Counter(found.values()).most_common(1)[0][0]
+        sizes[camera] = size
+        for path, (width, height) in found.items():
+            if (width, height) != size:
+                reason = f"{width}×{height} pixels, but camera {camera} has {size[0]}×{size[1]}"
+                problems.add("", reason, path)
+    return sizes
+
+
+def make_pictures(
+    pictures: Sequence[Picture],
+    written: set[str],
+    progress: Callable[[int, int], None],
+    problems: ProblemList,
+    only_check: bool = False,
+) -> dict[Key, Derivatives]:
+    """Decode all, and unless `only_check` store their derivatives; `written` receives new names at once.
+
+    A picture known from before is compared instead; one that changed since is a problem.
+    """
+    made: dict[Key, Derivatives] = {}
+    found: dict[Path, str] = {}
+    workers = min(MOST_THREADS, len(os.sched_getaffinity(0)))
+    # Threads: decoding, remapping and encoding all let go of Python's lock. The file is read inside the
+    # task, so no more pictures than threads are in memory.
+    with ThreadPoolExecutor(workers) as pool:
+        futures = {pool.submit(_make, picture, written, only_check): picture for picture in pictures}
+        try:
+            for done, future in enumerate(as_completed(futures), start=1):
+                picture = futures[future]
+                try:
+                    derivatives = future.result()
+                except ImageError as error:
+                    found[picture.path] = str(error)
+                else:
+                    if derivatives is not None:
+                        made[picture.key] = derivatives
+                progress(done, len(pictures))
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    # In the order of the files, not in the order threads happened to end.
+    problems.extend(
+        Problem(str(picture.path), "", found[picture.path]) for picture in pictures if picture.path in found
+    )
+    return made
+
+
+def discard(written: Iterable[str]) -> None:
+    """Delete files of an import that failed, except those some image has come to use."""
+    names = {Path(name).stem: name for name in written}
+    used: set[str] = set()
+    digests = list(names)
+    for start in range(0, len(digests), 400):
+        chunk = digests[start : start + 400]
+        rows = Image.objects.filter(Q(light_digest__in=chunk) | Q(full_digest__in=chunk))
+        for light, full in rows.values_list("light_digest", "full_digest"):
+            used |= {light, full}
+    for digest, name in names.items():
+        if digest not in used:
+            default_storage.delete(name)
+
+
+def _sizes(paths: Iterable[Path], problems: ProblemList) -> dict[Path, tuple[int, int]]:
+    found = {}
+    for path in paths:
+        try:
+            found[path] = images.header_size(path)
+        except ImageError as error:
+            problems.add("", str(error), path)
+    return found
+
+
+def _make(picture: Picture, written: set[str], only_check: bool) -> Derivatives | None:
+    try:
+        data = read_source(picture.path, images.MOST_BYTES)
+    except FormatError as error:
+        raise ImageError(error.problems[0].reason) from error
+    if picture.known is not None:
+        if images.digest_of(data) != picture.known:
+            raise ImageError("differs from the image this frame was imported with")
+        return None
+    if only_check:
+        images.decode(data)
+        return None
+    derivatives = images.make_derivatives(data, picture.undistort)
+    written.update(derivatives.written)
+    return derivatives

@@ -1,0 +1,88 @@
+"""Rows of an import, many at a time. The same invariants as `ops.annotations.save_frame` keeps one by one."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Mapping, Sequence
+
+from gtm_hit.geometry.camera import Camera as CalibratedCamera
+from gtm_hit.models import Annotation, Camera, Dataset, Frame, Image, Layer, LayerFrame, Save
+from gtm_hit.ops.images import Derivatives
+from gtm_hit.ops.importing.annotations import ImportedFrame
+from gtm_hit.ops.importing.pictures import Key
+
+ROWS_AT_ONCE = 2000
+
+
+def add_cameras(dataset: Dataset, cameras: Sequence[CalibratedCamera]) -> None:
+    Camera.objects.bulk_create(
+        Camera(
+            dataset=dataset,
+            index=camera.index,
+            name=camera.name,
+            width=camera.width,
+            height=camera.height,
+            matrix=camera.matrix.tolist(),
+            rvec=camera.rvec.tolist(),
+            tvec=camera.tvec.tolist(),
+            distortion=camera.distortion.tolist(),
+        )
+        for camera in cameras
+    )
+
+
+def add_frames(dataset: Dataset, numbers: Sequence[int], made: Mapping[Key, Derivatives]) -> None:
+    """Frames with their images, one per camera of the dataset."""
+    frames = Frame.objects.bulk_create(
+        [Frame(dataset=dataset, number=number) for number in numbers], batch_size=ROWS_AT_ONCE
+    )
+    cameras = list(dataset.cameras.all())
+    Image.objects.bulk_create(
+        [
+            Image(
+                frame=frame,
+                camera=camera,
+                source_digest=picture.source_digest,
+                light_digest=picture.light_digest,
+                full_digest=picture.full_digest,
+                light_bytes=picture.light_bytes,
+                full_bytes=picture.full_bytes,
+            )
+            for frame in frames
+            for camera in cameras
+            for picture in [made[camera.index, frame.number]]
+        ],
+        batch_size=ROWS_AT_ONCE,
+    )
+
+
+def add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
+    """Frames the layer does not have yet, each with its first save, done."""
+    frames = {frame.number: frame for frame in Frame.objects.filter(dataset=layer.dataset)}
+    heads = LayerFrame.objects.bulk_create(
+        [
+            LayerFrame(layer=layer, frame=frames[each.number], revision=1, done=True, nobody=not each.rows)
+            for each in imported
+        ],
+        batch_size=ROWS_AT_ONCE,
+    )
+    Save.objects.bulk_create(
+        [
+            Save(
+                layer_frame=head,
+                revision=1,
+                save_id=uuid.uuid4(),
+                annotations=each.rows,
+                done=True,
+                nobody=not each.rows,
+            )
+            for head, each in zip(heads, imported, strict=True)
+        ],
+        batch_size=ROWS_AT_ONCE,
+    )
+    Annotation.objects.bulk_create(
+        [Annotation(layer=layer, frame=frames[each.number], **row) for each in imported for row in each.rows],
+        batch_size=ROWS_AT_ONCE,
+    )
+    largest = max((row["person"] for each in imported for row in each.rows), default=0)
+    Layer.objects.filter(pk=layer.pk, last_person__lt=largest).update(last_person=largest)
