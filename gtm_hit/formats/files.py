@@ -15,12 +15,8 @@ def read_source(path: Path, most_bytes: int) -> bytes:
 
     Raises FormatError for a file that is missing, unreadable, not plain, empty, or above `most_bytes`.
     """
+    check_source(path)
     try:
-        # A named pipe or a device would block or never end.
-        if not path.is_file():
-            raise FormatError(
-                [Problem(str(path), "", "no such file" if not path.exists() else "not a plain file")]
-            )
         with path.open("rb") as stream:
             data = stream.read(most_bytes + 1)
     except (OSError, ValueError) as error:
@@ -30,6 +26,12 @@ def read_source(path: Path, most_bytes: int) -> bytes:
     if len(data) > most_bytes:
         raise FormatError([Problem(str(path), "", f"larger than {most_bytes} bytes")])
     return data
+
+
+def check_source(path: Path) -> None:
+    """Raises FormatError for what is not a plain file: a named pipe or a device would block or never end."""
+    if not path.is_file():
+        raise FormatError([Problem(str(path), "", "not a plain file" if path.exists() else "no such file")])
 
 
 def reason_of(error: OSError | ValueError) -> str:

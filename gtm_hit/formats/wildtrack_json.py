@@ -31,7 +31,7 @@ _NUMBER_AT_END = re.compile(r"([0-9]{1,9})$")
 class PersonPosition:
     """One person of one frame.
 
-    boxes : (C, 4) int32, xmin ymin xmax ymax in pixels by camera, all -1 where not visible; None without views
+    boxes : (C, 4) int32, xmin ymin xmax ymax in pixels by camera, all -1 if not visible; None without views
     extra : further keys of the file and their JSON values
     """
 
