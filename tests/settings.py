@@ -11,3 +11,8 @@ os.environ.setdefault("DATA_DIR", tempfile.mkdtemp(prefix="gtm-tests-"))
 from annotator.settings import *  # noqa: E402, F403
 
 PASSWORD_HASHERS = ["django.contrib.auth.hashers.MD5PasswordHasher"]
+# Names without hashes: no test has to collect the static files first.
+STORAGES = {
+    **STORAGES,  # noqa: F405
+    "staticfiles": {"BACKEND": "django.contrib.staticfiles.storage.StaticFilesStorage"},
+}

@@ -6,8 +6,8 @@ import hashlib
 import uuid
 from typing import Any
 
-from gtm_hit.models import Camera, Dataset, Frame, Image, Layer, Worker
-from gtm_hit.ops import annotations
+from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, Layer, Worker
+from gtm_hit.ops import annotations, assignments
 
 MATRIX = [[1000.0, 0.0, 960.0], [0.0, 1000.0, 540.0], [0.0, 0.0, 1.0]]
 
@@ -84,3 +84,25 @@ def save(layer: Layer, frame: Frame, rows: list[dict[str, Any]], revision: int =
     author = values.pop("author", None)
     save_id = values.pop("save_id", None) or uuid.uuid4()
     return annotations.save_frame(layer, frame, author, save_id, revision, rows, **values)
+
+
+def do_frames(assignment: Assignment) -> None:
+    """Every frame of the batch done, nobody in those that were never saved."""
+    for frame in assignment.batch.frames.all():
+        state = annotations.read_frame(assignment.layer, frame)
+        if not state.done:
+            people = state.annotations
+            save(
+                assignment.layer,
+                frame,
+                people,
+                state.revision,
+                author=assignment.worker,
+                done=True,
+                nobody=not people,
+            )
+
+
+def finish(assignment: Assignment) -> Assignment:
+    do_frames(assignment)
+    return assignments.submit(assignment)

@@ -94,31 +94,47 @@ def claim_once(worker: Worker, dataset: Dataset) -> Assignment:
         raise BusyElsewhere(other)
     if own := regained(worker, dataset):
         return own
-    batch = free_batches(worker, dataset).first()
+    # Skipping what others are about to take (SQLite has one writer at a time anyway).
+    batch = free_batches(worker, dataset).select_for_update(skip_locked=True).first()
     if batch is None:
         raise NoFreeBatch(f"{dataset}: no batch for {worker}")
     return lease(batch, worker)
 
 
-def held_batches() -> QuerySet[Assignment]:
-    return Assignment.objects.filter(batch=OuterRef("pk"), state__in=Assignment.HOLDING)
+def holding(batch: OuterRef) -> Exists:
+    """Whether somebody has the batch; leases past their end don't count."""
+    held = Assignment.objects.filter(batch=batch, state__in=Assignment.HOLDING)
+    return Exists(held.exclude(state=State.LEASED, expires_at__lte=timezone.now()))
 
 
 def free_batches(worker: Worker, dataset: Dataset) -> QuerySet[Batch]:
-    """Batches nobody holds, of numbers this worker has never had, first copies first.
-
-    Locked, skipping those that others are about to take (SQLite has one writer at a time anyway).
-    """
+    """Batches nobody holds, of numbers this worker has never had, first copies first."""
     had = Assignment.objects.filter(worker=worker, batch__dataset=dataset).values("batch__number")
-    free = Batch.objects.filter(~Exists(held_batches()), dataset=dataset).exclude(number__in=had)
-    return free.order_by("copy", "number").select_for_update(skip_locked=True)
+    free = Batch.objects.filter(~holding(OuterRef("pk")), dataset=dataset).exclude(number__in=had)
+    return free.order_by("copy", "number")
+
+
+def own_expired(worker: Worker, dataset: Dataset) -> QuerySet[Assignment]:
+    """The worker's assignments that ran out and whose batches are still free, newest first."""
+    mine = Assignment.objects.filter(worker=worker, batch__dataset=dataset)
+    over = mine.filter(state__in=[State.EXPIRED, State.LEASED], expires_at__lte=timezone.now())
+    return over.filter(~holding(OuterRef("batch"))).select_related("batch")
+
+
+def work_left(worker: Worker, dataset: Dataset) -> bool:
+    """Whether `claim` would find something; nothing is taken."""
+    return own_expired(worker, dataset).exists() or free_batches(worker, dataset).exists()
+
+
+def finished(worker: Worker, dataset: Dataset) -> QuerySet[Assignment]:
+    """What the worker submitted, newest first."""
+    mine = Assignment.objects.filter(worker=worker, batch__dataset=dataset, submitted_at__isnull=False)
+    return mine.select_related("batch__dataset", "layer").order_by("-submitted_at")
 
 
 def regained(worker: Worker, dataset: Dataset) -> Assignment | None:
-    """The worker's newest expired assignment whose batch is still free, leased again."""
-    expired = Assignment.objects.filter(worker=worker, batch__dataset=dataset, state=State.EXPIRED)
-    held = Assignment.objects.filter(batch=OuterRef("batch"), state__in=Assignment.HOLDING)
-    own = expired.filter(~Exists(held)).select_related("batch").first()
+    """The worker's newest expired assignment, leased again with all its work."""
+    own = own_expired(worker, dataset).first()
     if own is None:
         return None
     changes = {"state": State.LEASED, "leased_at": timezone.now(), "expires_at": lease_end()}
@@ -192,10 +208,17 @@ def submit(assignment: Assignment) -> Assignment:
         return locked
 
 
+def done_frames(assignment: Assignment) -> list[int]:
+    """Numbers of the batch's frames that are done on the server's record."""
+    done = Frame.objects.filter(
+        batches=assignment.batch_id, layer_frames__layer=assignment.layer_id, layer_frames__done=True
+    )
+    return list(done.order_by("number").values_list("number", flat=True))
+
+
 def unfinished_frames(assignment: Assignment) -> list[int]:
-    done = assignment.layer.layer_frames.filter(done=True).values("frame")
-    missing = Frame.objects.filter(batches=assignment.batch_id).exclude(pk__in=done)
-    return list(missing.order_by("number").values_list("number", flat=True))
+    frames = Frame.objects.filter(batches=assignment.batch_id).exclude(number__in=done_frames(assignment))
+    return list(frames.order_by("number").values_list("number", flat=True))
 
 
 def summary(assignment: Assignment) -> dict[str, Any]:

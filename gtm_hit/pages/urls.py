@@ -2,10 +2,11 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-from gtm_hit.pages import batches, datasets, home
+from gtm_hit.pages import batches, datasets, home, work
 
 urlpatterns: list[URLPattern | URLResolver] = [
     *home.urlpatterns,
     *datasets.urlpatterns,
     *batches.urlpatterns,
+    *work.urlpatterns,
 ]

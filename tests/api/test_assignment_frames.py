@@ -1,13 +1,10 @@
 from __future__ import annotations
 
-import uuid
-
 import pytest
 
 from gtm_hit.models import Annotation, Assignment, Save
-from gtm_hit.ops import annotations, assignments
 from tests.api.conftest import Caller, body
-from tests.work_scene import row
+from tests.work_scene import finish, row
 
 SCENE = "/api/v1/assignment/scene/"
 FRAMES = "/api/v1/assignment/frames/"
@@ -181,22 +178,3 @@ def test_a_save_whose_answer_was_lost_is_confirmed_after_submission(
     assert alice.put(FRAME, sent).status_code == 200
     finish(assignment)
     assert alice.put(FRAME, sent).status_code == 200
-
-
-def finish(assignment: Assignment) -> Assignment:
-    import uuid
-
-    for frame in assignment.batch.frames.all():
-        state = annotations.read_frame(assignment.layer, frame)
-        if not state.done:
-            annotations.save_frame(
-                assignment.layer,
-                frame,
-                assignment.worker,
-                uuid.uuid4(),
-                state.revision,
-                [],
-                done=True,
-                nobody=True,
-            )
-    return assignments.submit(assignment)

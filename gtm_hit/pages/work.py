@@ -1,0 +1,149 @@
+"""A worker's way: entry link, start page, tutorial, workbench, code. Only a pressed button takes anything."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import get_object_or_404, redirect, render
+from django.urls import path, reverse
+from django.views.decorators.cache import never_cache
+from django.views.decorators.http import require_http_methods, require_POST, require_safe
+
+from gtm_hit.models import Layer, Worker
+from gtm_hit.ops import assignments, tokens, tutorial, workers
+from gtm_hit.pages.access import staff_only
+
+# The names under which platforms put their worker's id into the address.
+ID_PARAMETERS = ["worker_id", "workerId", "PROLIFIC_PID", "participant_id"]
+PREVIEW = "ASSIGNMENT_ID_NOT_AVAILABLE"
+
+View = Callable[..., HttpResponse]
+
+
+def valid_links_only(view: View) -> View:
+    """A link that is not ours, cut off or revoked gets a page that says what to do."""
+
+    @wraps(view)
+    def guarded(request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponse:
+        try:
+            return view(request, *args, **kwargs)
+        except tokens.BadToken:
+            return render(request, "work/bad_link.html", status=404)
+
+    return guarded
+
+
+@require_http_methods(["GET", "HEAD", "POST"])
+@never_cache
+@valid_links_only
+def join(request: HttpRequest, token: str) -> HttpResponse:
+    entry = tokens.read_entry(token)
+    given = request.POST if request.method == "POST" else request.GET
+    external_id = entry.external_id or next((given[name] for name in ID_PARAMETERS if given.get(name)), "")
+    context = {
+        "dataset": entry.dataset,
+        "external_id": external_id,
+        "ask": not external_id,
+        "preview": request.GET.get("assignmentId") == PREVIEW,
+    }
+    if context["preview"]:
+        return render(request, "work/join.html", context)
+    try:
+        if request.method == "POST":
+            return to_home(workers.enter(entry.platform, external_id), entry)
+        known = workers.find(entry.platform, external_id) if external_id else None
+    except workers.InvalidWorkerId as error:
+        return render(request, "work/join.html", {**context, "ask": True, "problem": str(error)}, status=400)
+    return to_home(known, entry) if known else render(request, "work/join.html", context)
+
+
+def to_home(worker: Worker, entry: tokens.Entry) -> HttpResponse:
+    return redirect("work-home", token=tokens.worker_token(worker, entry.dataset))
+
+
+@require_safe
+@never_cache
+@valid_links_only
+def home(request: HttpRequest, token: str) -> HttpResponse:
+    seat = tokens.read_worker(token)
+    current = assignments.current(seat.worker, seat.dataset)
+    finished = list(assignments.finished(seat.worker, seat.dataset))
+    context = {
+        "token": token,
+        "dataset": seat.dataset,
+        "worker": seat.worker,
+        "current": current,
+        "done": len(assignments.done_frames(current)) if current else 0,
+        "total": current.batch.frames.count() if current else 0,
+        "finished": finished,
+        "summary": assignments.summary(finished[0]) if finished and not current else None,
+        "work_left": current is not None or assignments.work_left(seat.worker, seat.dataset),
+        "tutorial": tutorial.available(),
+    }
+    return render(request, "work/home.html", context)
+
+
+@require_POST
+@valid_links_only
+def start(request: HttpRequest, token: str) -> HttpResponse:
+    seat = tokens.read_worker(token)
+    try:
+        assignment = assignments.claim(seat.worker, seat.dataset)
+    except assignments.NoFreeBatch:
+        return render(request, "work/no_batch.html", {"token": token, "dataset": seat.dataset})
+    except assignments.BusyElsewhere as busy:
+        context = {
+            "dataset": busy.assignment.batch.dataset,
+            "link": reverse("annotate", args=[tokens.assignment_token(busy.assignment)]),
+        }
+        return render(request, "work/busy.html", context)
+    return redirect("annotate", token=tokens.assignment_token(assignment))
+
+
+@require_safe
+@never_cache
+@valid_links_only
+def learn(request: HttpRequest, token: str) -> HttpResponse:
+    tokens.read_worker(token)
+    home_url = reverse("work-home", args=[token])
+    if not tutorial.available():
+        return redirect(home_url)
+    return workbench(request, api="/api/v1/tutorial/", token=token, mode="tutorial", home=home_url)
+
+
+@require_safe
+@never_cache
+@valid_links_only
+def annotate(request: HttpRequest, token: str) -> HttpResponse:
+    assignment = tokens.read_assignment(token)
+    seat_token = tokens.worker_token(assignment.worker, assignment.batch.dataset)
+    if assignments.read_only_reason(assignment) == "expired":
+        return render(request, "work/expired.html", {"token": seat_token, "assignment": assignment})
+    home_url = reverse("work-home", args=[seat_token])
+    return workbench(request, api="/api/v1/assignment/", token=token, mode="assignment", home=home_url)
+
+
+@require_safe
+@staff_only
+@never_cache
+def layer(request: HttpRequest, slug: str, name: str) -> HttpResponse:
+    found = get_object_or_404(Layer, dataset__slug=slug, name=name)
+    home_url = reverse("dataset-layers", args=[slug])
+    return workbench(request, api=f"/api/v1/layers/{found.pk}/", token="", mode="layer", home=home_url)
+
+
+def workbench(request: HttpRequest, **context: str) -> HttpResponse:
+    return render(request, "workbench.html", context)
+
+
+urlpatterns = [
+    path("join/<str:token>/", join, name="join"),
+    path("work/<str:token>/", home, name="work-home"),
+    path("work/<str:token>/start/", start, name="work-start"),
+    path("work/<str:token>/tutorial/", learn, name="work-tutorial"),
+    path("annotate/<str:token>/", annotate, name="annotate"),
+    path("datasets/<slug:slug>/layers/<str:name>/", layer, name="layer"),
+]
