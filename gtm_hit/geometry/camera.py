@@ -111,7 +111,6 @@ class Camera:
             "rotation": self.rotation.tolist(),
             "tvec": self.tvec.tolist(),
             "distortion": self.distortion.tolist(),
-            "tilt": None if self.tilt is None else self.tilt.tolist(),
         }
 
 

@@ -1,0 +1,40 @@
+/** The positions people can stand on. A position's id is `row * columns + column`; columns run along x. */
+export class Grid {
+  /** @param {{columns: number, rows: number, step: number, origin: number[]}} json metres */
+  constructor({ columns, rows, step, origin }) {
+    Object.assign(this, { columns, rows, step, origin });
+    this.count = columns * rows;
+    this.extent = [columns * step, rows * step];
+  }
+
+  /** Ground point of a position, metres. */
+  metres(position) {
+    const [column, row] = [position % this.columns, Math.floor(position / this.columns)];
+    return {
+      x: this.origin[0] + (column * this.extent[0]) / this.columns,
+      y: this.origin[1] + (row * this.extent[1]) / this.rows,
+    };
+  }
+
+  /** Nearest position of a ground point; -1 more than half a step outside the grid. */
+  position(x, y) {
+    const [column, row] = [this._cell(x, 0), this._cell(y, 1)];
+    const inside = column >= 0 && row >= 0 && column < this.columns && row < this.rows;
+    return inside ? row * this.columns + column : -1;
+  }
+
+  /** Nearest position of a ground point, wherever that is; -1 only for NaN. */
+  nearest(x, y) {
+    const column = Math.min(Math.max(this._cell(x, 0), 0), this.columns - 1);
+    const row = Math.min(Math.max(this._cell(y, 1), 0), this.rows - 1);
+    return Number.isNaN(column + row) ? -1 : row * this.columns + column;
+  }
+
+  contains(position) {
+    return position >= 0 && position < this.count;
+  }
+
+  _cell(metres, axis) {
+    return Math.floor((metres - this.origin[axis]) / this.step + 0.5);
+  }
+}
