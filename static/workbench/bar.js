@@ -1,0 +1,155 @@
+import { carriedOf } from "./annotation.js";
+import { element, setText } from "./dom.js";
+import { keyName, keyTable } from "./keys.js";
+import { gettext, ngettext } from "./messages.js";
+import { saveWords } from "./save_words.js";
+
+const THEME_KEY = "gtm-theme"; // shared with the ordinary pages
+
+/** The line on top: where one is, what is left, how it is saved, and a button for everything. */
+export class Bar {
+  constructor({ scene, store, saver, panes, perform, jump, home, signIn }) {
+    Object.assign(this, { scene, store, saver, panes });
+    this._keys = new Map(keyTable().map(({ id, keys, label }) => [id, { keys, label }]));
+    this._perform = perform;
+    this._jump = jump;
+    this.element = this._build(home, signIn);
+    store.on("change", () => this._later());
+    store.on("frame", () => this._later());
+    saver.on("status", () => this._later());
+    panes.on("zoom", () => this._later());
+    this._update();
+  }
+
+  /** What one needs to know about the keyboard at the moment. */
+  showMode(controls) {
+    setText(this._mode, controls ? gettext("Buttons: Tab moves, Esc returns to annotating") : "");
+  }
+
+  /** Once per animation frame, however many edits there are. */
+  _later() {
+    this._frame ??= requestAnimationFrame(() => {
+      this._frame = null;
+      this._update();
+    });
+  }
+
+  _build(home, signIn) {
+    this._place = element("strong", { className: "place" });
+    this._strip = element("nav", { className: "strip", "aria-label": gettext("Frames") });
+    this._left = element("span", { className: "left" });
+    this._mode = element("span", { className: "mode" });
+    this._saved = element("span", { className: "save-words", role: "status" });
+    this._link = element("a", { href: signIn, target: "_blank", rel: "noopener", hidden: true });
+    this._toggles = ["zoom", "outline", "directions"].map((id) => this._button(id, toggleText(id), { "aria-pressed": "false" }));
+    return element(
+      "header",
+      { className: "bar" },
+      element("a", { className: "home", href: home, title: gettext("Back") }, "‹ ", this.scene.assignment?.batch ?? this.scene.layer?.name ?? this.scene.dataset.name),
+      this._button("previousFrame", "◀", { "aria-label": gettext("Previous frame") }),
+      this._place,
+      this._button("nextFrame", "▶", { "aria-label": gettext("Next frame") }),
+      this._strip,
+      this._left,
+      element("span", { className: "gap" }),
+      this._mode,
+      element("span", { className: "save", "data-save": "" }, this._saved, this._link),
+      this._button("undo", "↶", { "aria-label": gettext("Undo") }),
+      this._button("redo", "↷", { "aria-label": gettext("Redo") }),
+      ...this._toggles,
+      element("button", { type: "button", className: "quiet", title: gettext("Dark or light"), "aria-label": gettext("Dark or light"), onclick: toggleTheme }, "◐"),
+      this._button("help", "?", { "aria-label": gettext("Keys and mouse") }),
+    );
+  }
+
+  _button(id, text, properties = {}) {
+    const { keys, label } = this._keys.get(id);
+    return element(
+      "button",
+      {
+        type: "button",
+        className: "quiet",
+        "data-action": id,
+        title: `${label} (${keyName(keys[0])})`,
+        ...properties,
+        onclick: (event) => {
+          this._perform(id);
+          // A mouse press must not leave the focus here: Space would press the button again.
+          if (event.detail > 0) event.currentTarget.blur();
+        },
+      },
+      text,
+    );
+  }
+
+  _update() {
+    const { store, saver } = this;
+    const index = store.numbers.indexOf(store.current);
+    setText(this._place, gettext("Frame {place} of {n}", { place: index + 1, n: store.numbers.length }));
+    this._place.title = gettext("number {number}", { number: store.current });
+    setText(this._left, this._countWords());
+    this._updateStrip();
+    const status = saver.status();
+    const { text, link } = saveWords(status, saver.revision(store.current), this.scene.mode === "tutorial");
+    setText(this._saved, text);
+    setText(this._link, link ?? "");
+    this._link.hidden = !link;
+    this._saved.parentElement.dataset.save = status.kind;
+    const on = { zoom: this.panes.zoomed, outline: this.panes.options.outline, directions: this.panes.options.directions };
+    for (const button of this._toggles) button.setAttribute("aria-pressed", String(Boolean(on[button.dataset.action])));
+  }
+
+  _countWords() {
+    const people = this.store.people();
+    const waiting = carriedOf(people).length;
+    const count = ngettext("{n} person", "{n} people", people.size);
+    return waiting ? `${count} · ${ngettext("{n} yellow", "{n} yellow", waiting)}` : count;
+  }
+
+  /** One small button per frame: a batch fits; of a long layer only the surroundings are shown. */
+  _updateStrip() {
+    const { store } = this;
+    const index = store.numbers.indexOf(store.current);
+    const first = Math.max(0, Math.min(index - 5, store.numbers.length - 11));
+    const shown = store.numbers.slice(first, first + 11);
+    const signature = shown.map((number) => `${number}${store.frame(number).done}${number === store.current}`).join();
+    if (signature === this._signature) return;
+    this._signature = signature;
+    this._strip.replaceChildren(...shown.map((number, offset) => this._frameButton(number, first + offset + 1)));
+  }
+
+  _frameButton(number, place) {
+    const { done } = this.store.frame(number);
+    const state = done ? gettext("done") : gettext("not done");
+    return element(
+      "button",
+      {
+        type: "button",
+        className: done ? "done" : "",
+        "aria-current": number === this.store.current ? "true" : undefined,
+        "aria-label": gettext("Frame {place}, {state}", { place, state }),
+        title: gettext("Frame {place}, {state}", { place, state }),
+        onclick: (event) => {
+          this._jump(number);
+          if (event.detail > 0) event.currentTarget.blur();
+        },
+      },
+      done ? "✓" : String(place),
+    );
+  }
+}
+
+function toggleText(id) {
+  return { zoom: gettext("Zoom"), outline: gettext("Area"), directions: gettext("Arrows") }[id];
+}
+
+function toggleTheme() {
+  const root = document.documentElement;
+  root.dataset.theme = root.dataset.theme === "light" ? "dark" : "light";
+  try {
+    localStorage.setItem(THEME_KEY, root.dataset.theme);
+  } catch {
+    // the choice then lasts for this page only
+  }
+  root.dispatchEvent(new Event("themechange"));
+}

@@ -1,0 +1,47 @@
+import { ask } from "./dialogs.js";
+import { element } from "./dom.js";
+import { gettext } from "./messages.js";
+
+/**
+ * Somebody else (or another tab) changed the same people: ask for each whose version stays.
+ * @returns {Promise<Map<number, "ours"|"theirs">>}
+ */
+export async function askAboutConflicts(scene, store, { frame, conflicts }) {
+  const place = store.numbers.indexOf(frame) + 1;
+  const rows = conflicts.map((conflict) => conflictRow(scene, conflict));
+  await ask({
+    title: gettext("Frame {place} was changed in two places", { place }),
+    body: [
+      gettext("Everything else was put together. For these people, which one is right?"),
+      element("div", { className: "conflicts" }, rows),
+    ],
+    buttons: [{ id: "apply", label: gettext("Use these"), main: true }],
+  });
+  return new Map(
+    conflicts.map(({ person }, index) => [person, rows[index].querySelector("input:checked").value]),
+  );
+}
+
+function conflictRow(scene, { person, ours, theirs }) {
+  const choice = (value, text, annotation, checked) =>
+    element(
+      "label",
+      {},
+      element("input", { type: "radio", name: `person-${person}`, value, checked }),
+      `${text}: ${describe(scene, annotation)}`,
+    );
+  return element(
+    "fieldset",
+    {},
+    element("legend", {}, gettext("Person {person}", { person })),
+    choice("ours", gettext("mine"), ours, true),
+    choice("theirs", gettext("the other"), theirs, false),
+  );
+}
+
+function describe(scene, annotation) {
+  if (!annotation) return gettext("removed");
+  const { x, y } = scene.metres(annotation.position);
+  const state = annotation.state === "carried" ? gettext("carried over") : gettext("validated");
+  return gettext("at {x} m, {y} m, {state}", { x: x.toFixed(2), y: y.toFixed(2), state });
+}

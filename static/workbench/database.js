@@ -1,0 +1,56 @@
+/** The browser's own database, as promises. Private windows may refuse it: then `open` throws. */
+const NAME = "ground-truth-marker";
+const VERSION = 1;
+
+export const FRAMES = "frames"; // edits not yet acknowledged, one record per tab, layer and frame
+export const HISTORIES = "histories"; // undo and redo, one record per layer
+
+export async function openDatabase() {
+  const request = indexedDB.open(NAME, VERSION);
+  request.onupgradeneeded = () => {
+    const frames = request.result.createObjectStore(FRAMES, { keyPath: ["layer", "tab", "frame"] });
+    frames.createIndex("layer", "layer");
+    request.result.createObjectStore(HISTORIES, { keyPath: "layer" });
+  };
+  return new Database(await answer(request));
+}
+
+class Database {
+  constructor(connection) {
+    this._connection = connection;
+    // Another tab with a newer program wants to upgrade: let it, instead of blocking it for ever.
+    connection.onversionchange = () => connection.close();
+  }
+
+  put(store, value) {
+    return this._run(store, "readwrite", (objects) => objects.put(value));
+  }
+
+  delete(store, key) {
+    return this._run(store, "readwrite", (objects) => objects.delete(key));
+  }
+
+  get(store, key) {
+    return this._run(store, "readonly", (objects) => objects.get(key));
+  }
+
+  ofLayer(layer) {
+    return this._run(FRAMES, "readonly", (objects) => objects.index("layer").getAll(layer));
+  }
+
+  _run(store, mode, work) {
+    const transaction = this._connection.transaction(store, mode, { durability: "relaxed" });
+    const request = work(transaction.objectStore(store));
+    return new Promise((resolve, reject) => {
+      transaction.oncomplete = () => resolve(request.result);
+      transaction.onabort = transaction.onerror = () => reject(transaction.error);
+    });
+  }
+}
+
+function answer(request) {
+  return new Promise((resolve, reject) => {
+    request.onsuccess = () => resolve(request.result);
+    request.onerror = request.onblocked = () => reject(request.error ?? new Error("database blocked"));
+  });
+}

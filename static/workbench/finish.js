@@ -1,0 +1,68 @@
+import { carriedOf } from "./annotation.js";
+import { ApiError } from "./api.js";
+import { ask } from "./dialogs.js";
+import { element } from "./dom.js";
+import { gettext, ngettext } from "./messages.js";
+
+/** What there is to say about every frame of a batch before it is handed in. */
+export function summary(store) {
+  return store.numbers.map((number, index) => {
+    const { people, done } = store.frame(number);
+    return { number, place: index + 1, people: people.size, carried: carriedOf(people).length, done };
+  });
+}
+
+/** The summary after the last frame; submits, or jumps to a frame. */
+export async function finishAssignment({ store, saver, api, home, jump, notices }) {
+  const saved = await saver.flush();
+  const rows = summary(store);
+  const unfinished = rows.filter(({ done }) => !done);
+  const answer = await ask({
+    title: unfinished.length
+      ? ngettext("{n} frame is not finished yet", "{n} frames are not finished yet", unfinished.length)
+      : gettext("All {n} frames are done", { n: rows.length }),
+    body: [table(rows), saved ? "" : gettext("Some edits are not saved yet; wait until “All saved” is shown.")].filter(Boolean),
+    buttons: [
+      { id: "submit", label: gettext("Submit"), main: true, disabled: unfinished.length > 0 || !saved },
+      ...(unfinished.length ? [{ id: "first", label: gettext("Go to the first unfinished frame") }] : []),
+      { id: "stay", label: gettext("Back to annotating") },
+    ],
+  });
+  if (answer === "first") return jump(unfinished[0].number);
+  if (answer?.startsWith("frame ")) return jump(Number(answer.slice(6)));
+  if (answer === "submit") return submit({ api, home, jump, notices });
+}
+
+async function submit({ api, home, jump, notices }) {
+  try {
+    await api.submit();
+    window.location.assign(home);
+  } catch (error) {
+    const frames = error instanceof ApiError && error.code === "unfinished" ? error.details.frames : [];
+    notices.say(gettext("Not submitted: {reason}", { reason: error.message }));
+    if (frames.length) return jump(frames[0]);
+  }
+}
+
+function table(rows) {
+  const head = [gettext("Frame"), gettext("People"), gettext("State"), ""];
+  return element(
+    "table",
+    { className: "summary" },
+    element("thead", {}, element("tr", {}, head.map((text) => element("th", { scope: "col" }, text)))),
+    element("tbody", {}, rows.map(tableRow)),
+  );
+}
+
+function tableRow({ number, place, people, carried, done }) {
+  const state = done ? gettext("done") : carried ? ngettext("{n} yellow", "{n} yellow", carried) : gettext("not finished");
+  const go = (event) => event.target.closest("dialog").close(`frame ${number}`);
+  return element(
+    "tr",
+    { className: done ? "done" : "open" },
+    element("td", {}, String(place)),
+    element("td", {}, String(people)),
+    element("td", {}, state),
+    element("td", {}, element("button", { type: "button", className: "quiet", onclick: go }, gettext("Open"))),
+  );
+}

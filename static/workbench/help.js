@@ -1,0 +1,43 @@
+import { ask } from "./dialogs.js";
+import { element } from "./dom.js";
+import { groupTitle, keyName, keyTable } from "./keys.js";
+import { gettext } from "./messages.js";
+
+/** The key sheet, made from the key table. */
+export function showHelp() {
+  const groups = Map.groupBy(keyTable(), ({ group }) => group);
+  const sheet = [...groups].map(([group, rows]) =>
+    element("section", {}, element("h3", {}, groupTitle(group)), element("dl", {}, rows.flatMap(keyRow))),
+  );
+  const mouse = element(
+    "section",
+    {},
+    element("h3", {}, gettext("Mouse")),
+    element("dl", {}, mouseRows().flatMap(([what, label]) => row([element("kbd", {}, what)], label))),
+  );
+  return ask({
+    title: gettext("Keys and mouse"),
+    wide: true,
+    body: [element("div", { className: "key-sheet" }, mouse, ...sheet)],
+    buttons: [{ id: "close", label: gettext("Close"), main: true }],
+  });
+}
+
+function keyRow({ keys, label }) {
+  return row(keys.map((key) => element("kbd", {}, keyName(key))), label);
+}
+
+function row(keys, label) {
+  return [element("dt", {}, keys), element("dd", {}, label)];
+}
+
+function mouseRows() {
+  return [
+    [gettext("Click on feet"), gettext("a new person there, in all views at once")],
+    [gettext("Click on a box or a foot point"), gettext("select that person; again: the one behind")],
+    [gettext("Shift + click"), gettext("a new person, also inside somebody's box")],
+    [gettext("Right click"), gettext("move the selected person here")],
+    [gettext("Wheel"), gettext("zoom this view")],
+    [gettext("Drag"), gettext("move the zoomed picture")],
+  ];
+}

@@ -1,0 +1,77 @@
+import { combined, inverse } from "./commands.js";
+import { Emitter } from "./emitter.js";
+import { same } from "./merge.js";
+
+const LONGEST = 500; // steps kept
+const TOGETHER = 900; // ms; presses of a held key are one step to undo
+
+/** Undo and redo over the store, across frames. Emits `change` after every step. */
+export class History extends Emitter {
+  constructor(store) {
+    super();
+    this._store = store;
+    this._done = [];
+    this._undone = [];
+  }
+
+  get undoLabel() {
+    return this._done.at(-1)?.label ?? null;
+  }
+
+  get redoLabel() {
+    return this._undone.at(-1)?.label ?? null;
+  }
+
+  run(patch) {
+    this._store.apply(patch.edits);
+    if (patch.selection.after !== patch.selection.before) this._store.select(patch.selection.after);
+    const last = this._done.at(-1);
+    if (last && patch.group && last.group === patch.group && patch.at - last.at < TOGETHER) {
+      this._done[this._done.length - 1] = combined(last, patch);
+    } else {
+      this._done.push(patch);
+      if (this._done.length > LONGEST) this._done.shift();
+    }
+    this._undone = [];
+    this.emit("change");
+  }
+
+  /** @returns {{patch, skipped: number} | null} null: nothing to undo */
+  undo() {
+    return this._step(this._done, this._undone, inverse);
+  }
+
+  redo() {
+    return this._step(this._undone, this._done, (patch) => patch);
+  }
+
+  /** Stacks as plain values, for keeping them over a reload. */
+  dump() {
+    return { done: this._done, undone: this._undone };
+  }
+
+  restore({ done, undone }) {
+    this._done = done;
+    this._undone = undone;
+    this.emit("change");
+  }
+
+  _step(from, to, direction) {
+    const patch = from.pop();
+    if (!patch) return null;
+    const step = direction(patch);
+    const edits = step.edits.filter((edit) => this._stillTrue(edit));
+    to.push({ ...patch, group: null });
+    this._store.open(step.frame);
+    this._store.apply(edits);
+    this._store.select(step.selection.after);
+    this.emit("change");
+    return { patch, skipped: step.edits.length - edits.length };
+  }
+
+  /** Somebody else's newer change of the same person (merged in from a save) is not undone. */
+  _stillTrue(edit) {
+    if (edit.flags) return true;
+    return same(this._store.person(edit.person, edit.frame) ?? null, edit.before);
+  }
+}

@@ -1,0 +1,86 @@
+import { FRAMES, HISTORIES, openDatabase } from "./database.js";
+import { joinTabs } from "./tabs.js";
+
+/**
+ * Keeps what the server has not acknowledged, so that a crash, a closed lid or an expired session loses nothing.
+ * Writing never blocks an edit: one write at a time per record, always of the newest value.
+ */
+export class Journal {
+  /** @param {string} layer whose edits; null: nothing is kept (tutorial) */
+  static async open(layer) {
+    if (layer === null) return new Journal(layer, null, null);
+    try {
+      const [database, tab] = await Promise.all([openDatabase(), joinTabs(layer)]);
+      return new Journal(layer, database, tab);
+    } catch (error) {
+      console.warn("edits cannot be kept in this browser", error);
+      return new Journal(layer, null, null);
+    }
+  }
+
+  constructor(layer, database, tab) {
+    this._layer = layer;
+    this._database = database;
+    this._tab = tab;
+    this._waiting = new Map();
+    this._writing = new Set();
+  }
+
+  /** Whether edits survive a crash in this browser. */
+  get keeps() {
+    return this._database !== null;
+  }
+
+  /** @param {() => object} record made when it is written, so that a burst of edits costs one write */
+  write(frame, record) {
+    this._queue(`frame ${frame}`, () =>
+      this._database.put(FRAMES, { ...record(), layer: this._layer, tab: this._tab.name, frame }),
+    );
+  }
+
+  clear(frame) {
+    this._queue(`frame ${frame}`, () => this._database.delete(FRAMES, [this._layer, this._tab.name, frame]));
+  }
+
+  /** Edits of this tab before its reload, and of tabs that are gone; oldest first. */
+  async recover() {
+    if (!this.keeps) return [];
+    const records = await this._database.ofLayer(this._layer);
+    const mine = records.filter(({ tab }) => tab === this._tab.name || !this._tab.alive.has(tab));
+    return mine.sort((one, other) => one.at - other.at);
+  }
+
+  /** An adopted record of another tab now lives under this tab's name. */
+  async drop(record) {
+    if (record.tab !== this._tab.name) await this._database.delete(FRAMES, [record.layer, record.tab, record.frame]);
+  }
+
+  writeHistory(dump) {
+    this._queue("history", () => this._database.put(HISTORIES, { layer: this._layer, ...dump() }));
+  }
+
+  async readHistory() {
+    return this.keeps ? this._database.get(HISTORIES, this._layer) : undefined;
+  }
+
+  _queue(name, work) {
+    if (!this.keeps) return;
+    this._waiting.set(name, work);
+    if (!this._writing.has(name)) this._drain(name);
+  }
+
+  async _drain(name) {
+    this._writing.add(name);
+    await Promise.resolve(); // after the whole edit, also when it touches a frame several times
+    while (this._waiting.has(name)) {
+      const work = this._waiting.get(name);
+      this._waiting.delete(name);
+      try {
+        await work();
+      } catch (error) {
+        console.warn("the journal could not be written", error);
+      }
+    }
+    this._writing.delete(name);
+  }
+}

@@ -1,0 +1,69 @@
+/**
+ * The one table of keys: the keyboard, the help sheet and the tooltips are made from it. `keys` are chords as
+ * `chord()` writes them. `labels` are texts for translation.
+ */
+import { gettext } from "./messages.js";
+
+const GROUPS = {
+  person: () => gettext("The selected person"),
+  people: () => gettext("Choosing people"),
+  frame: () => gettext("Frames"),
+  view: () => gettext("Views"),
+  other: () => gettext("Everything else"),
+};
+
+const TABLE = [
+  ["left", "person", ["ArrowLeft"], () => gettext("one position to the left, as the active view shows it")],
+  ["right", "person", ["ArrowRight"], () => gettext("one position to the right")],
+  ["up", "person", ["ArrowUp"], () => gettext("one position upwards: away from the camera")],
+  ["down", "person", ["ArrowDown"], () => gettext("one position downwards: towards the camera")],
+  ["leftFar", "person", ["Shift+ArrowLeft"], () => gettext("ten positions to the left")],
+  ["rightFar", "person", ["Shift+ArrowRight"], () => gettext("ten positions to the right")],
+  ["upFar", "person", ["Shift+ArrowUp"], () => gettext("ten positions upwards")],
+  ["downFar", "person", ["Shift+ArrowDown"], () => gettext("ten positions downwards")],
+  ["validate", "person", ["e"], () => gettext("validate: the position is right")],
+  ["validateNext", "person", ["Enter"], () => gettext("validate and go to the next yellow person")],
+  ["remove", "person", ["Backspace", "Delete"], () => gettext("remove from this frame")],
+  ["nextPerson", "people", ["Tab"], () => gettext("next person")],
+  ["previousPerson", "people", [" ", "Shift+Tab"], () => gettext("previous person")],
+  ["nextCarried", "people", ["f"], () => gettext("next yellow person, still to be looked at")],
+  ["nextFrame", "frame", ["n"], () => gettext("next frame; this one is done")],
+  ["previousFrame", "frame", ["p"], () => gettext("previous frame")],
+  ["bring", "frame", ["l"], () => gettext("load the people of the previous frame who are missing here")],
+  ["reload", "frame", ["Shift+l"], () => gettext("load this frame from the server again")],
+  ["save", "frame", ["s", "Ctrl+s"], () => gettext("save now (it also happens by itself)")],
+  ["zoom", "view", ["z"], () => gettext("zoom all views to the selected person, and back")],
+  ["outline", "view", ["t"], () => gettext("show the border of the ground area")],
+  ["directions", "view", ["h"], () => gettext("show where the arrow keys lead")],
+  ["undo", "other", ["Ctrl+z"], () => gettext("undo")],
+  ["redo", "other", ["Ctrl+y", "Ctrl+Shift+z"], () => gettext("redo")],
+  ["help", "other", ["?", "F1"], () => gettext("this sheet")],
+  ["controls", "other", ["F6"], () => gettext("let Tab move between the buttons; Escape returns to annotating")],
+  ["escape", "other", ["Escape"], () => gettext("leave zoom, then let go of the person")],
+];
+
+/** @returns {{id, group, keys: string[], label: string}[]} in the order of the help sheet */
+export function keyTable() {
+  return TABLE.map(([id, group, keys, label]) => ({ id, group, keys, label: label() }));
+}
+
+export function groupTitle(group) {
+  return GROUPS[group]();
+}
+
+/** A keyboard event as text: "Shift+ArrowLeft", "Ctrl+z", "?". Command counts as Ctrl. */
+export function chord(event) {
+  const letter = event.key.length === 1;
+  const key = letter ? event.key.toLowerCase() : event.key;
+  const shifted = event.shiftKey && (!letter || event.key.toLowerCase() !== event.key.toUpperCase());
+  return [event.ctrlKey || event.metaKey ? "Ctrl+" : "", event.altKey ? "Alt+" : "", shifted ? "Shift+" : "", key].join("");
+}
+
+/** A chord as it is printed on keys. */
+export function keyName(text) {
+  const names = { ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓", " ": gettext("Space"), Escape: "Esc" };
+  return text
+    .split("+")
+    .map((part) => names[part] ?? (part.length === 1 ? part.toUpperCase() : part))
+    .join(" + ");
+}

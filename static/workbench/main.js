@@ -1,0 +1,27 @@
+import { element } from "./dom.js";
+import { gettext, useCatalog } from "./messages.js";
+import { startWorkbench } from "./workbench.js";
+
+const { api, token, mode, home } = document.body.dataset;
+const root = document.getElementById("workbench");
+const csrf = document.querySelector("meta[name=csrf-token]")?.content ?? "";
+const catalog = document.getElementById("catalog");
+if (catalog) useCatalog(JSON.parse(catalog.textContent));
+
+try {
+  await startWorkbench(root, { api, token, mode, home, csrf });
+  root.dataset.ready = "true";
+} catch (error) {
+  console.error(error);
+  root.replaceChildren(
+    element(
+      "div",
+      { className: "start-problem", role: "alert" },
+      element("h1", {}, gettext("The workbench could not start")),
+      element("p", {}, error.message),
+      element("p", {}, gettext("Nothing is lost: edits are kept on this computer until the server has them.")),
+      element("button", { type: "button", className: "main", onclick: () => window.location.reload() }, gettext("Try again")),
+      element("a", { href: home }, gettext("Back")),
+    ),
+  );
+}

@@ -1,0 +1,151 @@
+import { CameraView } from "./camera_view.js";
+import { element } from "./dom.js";
+import { LOOKS } from "./looks.js";
+import { MapView } from "./map_view.js";
+import { gettext } from "./messages.js";
+import { Emitter } from "./emitter.js";
+import { Pane } from "./pane.js";
+import { Scheduler } from "./scheduler.js";
+import { focus } from "./transform.js";
+import { overlaps } from "./regions.js";
+
+const SHARE = 0.5; // of a pane's height for a zoomed person
+
+/**
+ * All panes and what they have in common: options, the active view, zoom to the selected person. It listens to
+ * the store and marks what has to be painted again. Emits `active` {view} and `zoom` {on}.
+ */
+export class Panes extends Emitter {
+  constructor({ scene, store, images, options }) {
+    super();
+    this.scene = scene;
+    this.store = store;
+    this.options = options;
+    this.zoomed = false;
+    this.ghost = null; // {annotation, look}: what a click would place
+    this._extras = [];
+    this.element = element("div", { className: "panes" });
+    this._scheduler = new Scheduler();
+    const model = this._model();
+    const views = scene.cameras.map((_, index) => new CameraView(scene, index, images));
+    views.push(new MapView(scene, gettext("Ground from above")));
+    this.all = views.map((view) => new Pane(view, model, this._scheduler));
+    this.element.append(...this.all.map((pane) => pane.element));
+    this.active = this.all[0];
+    this._follow(store, images);
+  }
+
+  /** Something drawn over the people: `(pane) => items`, asked at every paint. */
+  addExtra(extra) {
+    this._extras.push(extra);
+  }
+
+  activate(pane) {
+    if (pane === this.active) return;
+    this.active.element.classList.remove("active");
+    pane.element.classList.add("active");
+    this.active = pane;
+    this.markPeople();
+    this.emit("active", { view: pane.view });
+  }
+
+  markPeople(all = false) {
+    for (const pane of this.all) pane.markPeople(all);
+  }
+
+  markPictures() {
+    for (const pane of this.all) pane.markPicture();
+  }
+
+  showGhost(ghost) {
+    if (ghost?.annotation === this.ghost?.annotation && ghost?.look === this.ghost?.look) return;
+    this.ghost = ghost;
+    this.markPeople();
+  }
+
+  /** An option of display changed. */
+  set(name, value) {
+    this.options[name] = value;
+    this.markPictures();
+    this.markPeople(true);
+  }
+
+  /** Every view to the selected person, or back to the whole picture. */
+  zoom(on) {
+    this.zoomed = on && this.store.selected() !== undefined;
+    for (const pane of this.all) {
+      if (this.zoomed) this._zoomIn(pane);
+      else pane.fit();
+    }
+    this.emit("zoom", { on: this.zoomed });
+  }
+
+  _zoomIn(pane) {
+    const person = this.store.selected();
+    const box = person && pane.view.box(person);
+    if (!box) return pane.fit();
+    const grown = pane.view.index === null ? grow(box, 1.2) : box;
+    pane.look(focus(grown, pane.room, SHARE, pane.view.largest));
+  }
+
+  /** While zoomed, a person that is moved out of sight is brought back. */
+  _keepInSight() {
+    const person = this.store.selected();
+    if (!this.zoomed || !person) return;
+    for (const pane of this.all) {
+      const box = pane.view.box(person);
+      if (!box) continue;
+      const { x: xmin, y: ymin } = pane.transform.toPane(box.xmin, box.ymin);
+      const { x: xmax, y: ymax } = pane.transform.toPane(box.xmax, box.ymax);
+      const room = { xmin: 0, ymin: 0, xmax: pane.room.width, ymax: pane.room.height };
+      const inside = xmin >= 0 && ymin >= 0 && xmax <= room.xmax && ymax <= room.ymax;
+      if (!inside || !overlaps({ xmin, ymin, xmax, ymax }, room)) this._zoomIn(pane);
+    }
+  }
+
+  _follow(store, images) {
+    store.on("change", ({ frames }) => {
+      if (!frames.has(store.current)) return;
+      this.markPeople();
+      this._keepInSight();
+    });
+    store.on("selection", ({ after }) => {
+      this.markPeople();
+      if (this.zoomed) this.zoom(after !== null);
+    });
+    store.on("frame", () => {
+      this.showGhost(null);
+      this.markPictures();
+    });
+    images.on("picture", ({ frame, camera }) => {
+      if (frame === store.current) this.all.find((pane) => pane.view.index === camera)?.markPicture();
+    });
+  }
+
+  _model() {
+    const panes = this;
+    return {
+      options: this.options,
+      get frame() {
+        return panes.store.current;
+      },
+      get people() {
+        return panes.store.people();
+      },
+      get selection() {
+        return panes.store.selection;
+      },
+      extras: (pane) => [...this._ghostItems(pane), ...this._extras.flatMap((extra) => extra(pane))],
+    };
+  }
+
+  _ghostItems(pane) {
+    if (!this.ghost || !pane.view.box(this.ghost.annotation)) return [];
+    const { annotation, look } = this.ghost;
+    return [{ ...pane.view.item(annotation, LOOKS[look], pane.transform, this.options), id: "ghost" }];
+  }
+}
+
+function grow(box, metres) {
+  return { xmin: box.xmin - metres, ymin: box.ymin - metres, xmax: box.xmax + metres, ymax: box.ymax + metres };
+}

@@ -1,0 +1,100 @@
+import { asList } from "./annotation.js";
+import { element } from "./dom.js";
+import { gettext, ngettext } from "./messages.js";
+
+/** The list of people in the frame: number, state in words, in how many views they are seen. */
+export class PeoplePanel {
+  constructor({ scene, store, select }) {
+    Object.assign(this, { scene, store });
+    this._select = select;
+    this._rows = new Map();
+    this._list = element("ul", { className: "people", role: "listbox", "aria-label": gettext("People in this frame") });
+    this._empty = element("p", { className: "empty" }, gettext("Nobody yet. Click on somebody's feet in any view."));
+    this._title = element("h2", {}, gettext("People"));
+    this._details = element("p", { className: "details" });
+    this.element = element("aside", { className: "panel" }, this._title, this._empty, this._list, this._details);
+    for (const event of ["change", "selection", "frame"]) store.on(event, () => this._later());
+    this._update();
+  }
+
+  _later() {
+    this._frame ??= requestAnimationFrame(() => {
+      this._frame = null;
+      this._update();
+    });
+  }
+
+  /** Only rows whose person changed are touched: this runs for every step of a held key. */
+  _update() {
+    const people = asList(this.store.people());
+    const { selection } = this.store;
+    this._empty.hidden = people.length > 0;
+    const gone = new Set(this._rows.keys());
+    people.forEach((one, index) => {
+      gone.delete(one.person);
+      this._place(this._rowOf(one.person), index);
+      this._refresh(this._rows.get(one.person), one, one.person === selection);
+    });
+    for (const person of gone) {
+      this._rows.get(person).node.remove();
+      this._rows.delete(person);
+    }
+    this._describe();
+  }
+
+  _rowOf(person) {
+    if (!this._rows.has(person)) this._rows.set(person, this._makeRow(person));
+    return this._rows.get(person).node;
+  }
+
+  _makeRow(person) {
+    const state = element("span", { className: "state" });
+    const views = element("span", { className: "views" });
+    const node = element(
+      "li",
+      { role: "option", onclick: () => this._select(person) },
+      element("span", { className: "number" }, String(person)),
+      state,
+      views,
+    );
+    return { node, state, views, shown: null, selected: null };
+  }
+
+  _place(node, index) {
+    if (this._list.children[index] !== node) this._list.insertBefore(node, this._list.children[index] ?? null);
+  }
+
+  _refresh(row, one, selected) {
+    if (row.shown !== one) {
+      row.shown = one;
+      const carried = one.state === "carried";
+      row.node.dataset.state = one.state;
+      const state = carried ? gettext("carried over") : gettext("validated");
+      if (row.state.textContent !== state) row.state.textContent = state;
+      const seen = this.scene.seenBy(one);
+      const views = ngettext("{n} view", "{n} views", seen);
+      if (row.views.textContent !== views) row.views.textContent = views;
+    }
+    if (row.selected !== selected) {
+      row.selected = selected;
+      row.node.setAttribute("aria-selected", String(selected));
+      if (selected) row.node.scrollIntoView({ block: "nearest" });
+    }
+  }
+
+  _describe() {
+    const one = this.store.selected();
+    if (!one) {
+      this._details.textContent = "";
+      return;
+    }
+    const { x, y } = this.scene.metres(one.position);
+    const { height } = this.scene.cylinderOf(one);
+    this._details.textContent = gettext("Person {person}: x {x} m, y {y} m, height {height} m", {
+      person: one.person,
+      x: x.toFixed(3),
+      y: y.toFixed(3),
+      height: height.toFixed(2),
+    });
+  }
+}

@@ -1,0 +1,116 @@
+import { contains } from "./regions.js";
+
+const FOOT = 9; // CSS pixels around a foot point that mean the foot
+const STILL = 4; // CSS pixels a pointer may wander during a click
+const AGAIN = 6; // CSS pixels: a click here again means the person behind
+
+/**
+ * Pointer events of the panes, as intents: `place`, `select`, `moveHere`, `hover`, `leave`. Wheel and drag
+ * change a pane's pan and zoom directly.
+ */
+export class Pointer {
+  constructor(panes, intents) {
+    this._panes = panes;
+    this._intents = intents;
+    this._press = null;
+    this._lastPick = null;
+    for (const pane of panes.all) this._attach(pane);
+  }
+
+  /** People under a point, best first: foot points, then boxes from the front to the back. */
+  pick(pane, at) {
+    const people = [...this._panes.store.people().values()];
+    const feet = people
+      .map((person) => ({ person, distance: footDistance(pane, person, at) }))
+      .filter(({ distance }) => distance <= FOOT)
+      .sort((one, other) => one.distance - other.distance)
+      .map(({ person }) => person);
+    const { x, y } = pane.transform.toSource(at.x, at.y);
+    const inside = people
+      .filter((person) => !feet.includes(person))
+      .map((person) => ({ person, box: pane.view.box(person) }))
+      .filter(({ box }) => box && contains(box, x, y))
+      .sort((one, other) => other.box.ymax - one.box.ymax)
+      .map(({ person }) => person);
+    return [...feet, ...inside];
+  }
+
+  _attach(pane) {
+    const { element } = pane;
+    element.addEventListener("pointerenter", () => this._panes.activate(pane));
+    element.addEventListener("pointerdown", (event) => this._onDown(pane, event));
+    element.addEventListener("pointermove", (event) => this._onMove(pane, event));
+    element.addEventListener("pointerup", (event) => this._onUp(pane, event));
+    element.addEventListener("pointercancel", () => (this._press = null));
+    element.addEventListener("pointerleave", () => this._intents.leave());
+    element.addEventListener("contextmenu", (event) => this._onMenu(pane, event));
+    element.addEventListener("wheel", (event) => this._onWheel(pane, event), { passive: false });
+  }
+
+  _onDown(pane, event) {
+    if (event.target.closest("button") || !pane.transform) return;
+    this._panes.activate(pane);
+    if (event.button === 2) return;
+    this._press = { pane, x: event.clientX, y: event.clientY, last: event, dragged: false };
+    pane.element.setPointerCapture(event.pointerId);
+  }
+
+  _onMove(pane, event) {
+    const press = this._press;
+    if (!press) return this._intents.hover(pane, pane.local(event), event);
+    if (press.pane !== pane) return;
+    press.dragged ||= Math.hypot(event.clientX - press.x, event.clientY - press.y) > STILL;
+    if (!press.dragged) return;
+    pane.element.classList.add("dragging");
+    pane.look(pane.transform.moved(event.clientX - press.last.clientX, event.clientY - press.last.clientY));
+    press.last = event;
+  }
+
+  _onUp(pane, event) {
+    const press = this._press;
+    this._press = null;
+    pane.element.classList.remove("dragging");
+    if (!press || press.pane !== pane || press.dragged || event.button !== 0) return;
+    this._click(pane, event);
+  }
+
+  _click(pane, event) {
+    const at = pane.local(event);
+    const found = event.shiftKey ? [] : this.pick(pane, at);
+    if (!found.length) {
+      this._lastPick = null;
+      return this._intents.place(pane, at, event);
+    }
+    this._intents.select(this._inTurn(pane, at, found).person);
+  }
+
+  /** Clicking on the same place again goes through everybody there. */
+  _inTurn(pane, at, found) {
+    const last = this._lastPick;
+    const again = last?.pane === pane && Math.hypot(at.x - last.at.x, at.y - last.at.y) <= AGAIN;
+    const index = again ? (found.findIndex(({ person }) => person === last.person) + 1) % found.length : 0;
+    this._lastPick = { pane, at, person: found[index].person };
+    return found[index];
+  }
+
+  _onMenu(pane, event) {
+    event.preventDefault();
+    if (pane.transform && !event.target.closest("button")) this._intents.moveHere(pane, pane.local(event), event);
+  }
+
+  _onWheel(pane, event) {
+    event.preventDefault();
+    if (!pane.transform) return;
+    const pixels = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? event.deltaY * 32 : event.deltaY;
+    const { x, y } = pane.local(event);
+    pane.look(pane.transform.zoomAt(Math.exp(-pixels / 400), x, y));
+    this._intents.hover(pane, { x, y }, event);
+  }
+}
+
+function footDistance(pane, person, at) {
+  const foot = pane.view.box(person) && pane.view.foot(person);
+  if (!foot) return Infinity;
+  const { x, y } = pane.transform.toPane(foot.x, foot.y);
+  return Math.hypot(x - at.x, y - at.y);
+}

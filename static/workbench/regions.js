@@ -1,0 +1,37 @@
+/** Rectangles {xmin, ymin, xmax, ymax} on a pane. Pure. */
+
+export function overlaps(one, other) {
+  return one.xmin < other.xmax && other.xmin < one.xmax && one.ymin < other.ymax && other.ymin < one.ymax;
+}
+
+export function contains(box, x, y, margin = 0) {
+  return x >= box.xmin - margin && x <= box.xmax + margin && y >= box.ymin - margin && y <= box.ymax + margin;
+}
+
+export function union(one, other) {
+  if (!one) return other;
+  return {
+    xmin: Math.min(one.xmin, other.xmin),
+    ymin: Math.min(one.ymin, other.ymin),
+    xmax: Math.max(one.xmax, other.xmax),
+    ymax: Math.max(one.ymax, other.ymax),
+  };
+}
+
+/**
+ * What has to be painted again to get from the items `before` to the items `after`; null: nothing.
+ * Items are {id, what, look, bounds}: same `what` and `look` look the same.
+ */
+export function damage(before, after) {
+  const old = new Map(before.map((item) => [item.id, item]));
+  let dirty = null;
+  for (const item of after) {
+    const was = old.get(item.id);
+    old.delete(item.id);
+    if (was && was.what === item.what && was.look === item.look) continue;
+    dirty = union(dirty, item.bounds);
+    if (was) dirty = union(dirty, was.bounds);
+  }
+  for (const gone of old.values()) dirty = union(dirty, gone.bounds);
+  return dirty;
+}

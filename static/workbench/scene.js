@@ -1,0 +1,76 @@
+import { Camera, backProject, project } from "../geometry/camera.js";
+import { Grid } from "../geometry/grid.js";
+import { rectangle } from "../geometry/rectangle.js";
+
+/** What does not change while annotating: cameras, grid, cylinder, frames; and the geometry between them. */
+export class Scene {
+  /** @param {object} json the server's scene */
+  constructor(json) {
+    this.mode = json.mode;
+    this.dataset = json.dataset;
+    this.layer = json.layer;
+    this.assignment = json.assignment;
+    this.editable = json.editable;
+    this.readOnlyReason = json.read_only_reason;
+    this.nextPerson = json.next_person;
+    this.frames = json.frames;
+    this.cameras = json.cameras.map((camera) => new Camera(camera));
+    this.grid = new Grid(json.grid);
+    this.cylinder = json.cylinder;
+    this.footRule = json.foot_rule;
+    this._rectangles = new WeakMap();
+  }
+
+  /** Rectangles of one annotation in all views, `null` where not visible; computed once per annotation. */
+  rectangles(annotation) {
+    let rectangles = this._rectangles.get(annotation);
+    if (!rectangles) {
+      const cylinder = this.cylinderOf(annotation);
+      rectangles = this.cameras.map((camera) =>
+        rectangle(camera, this.grid, cylinder, this.footRule, annotation.position),
+      );
+      this._rectangles.set(annotation, rectangles);
+    }
+    return rectangles;
+  }
+
+  cylinderOf(annotation) {
+    return {
+      radius: annotation.radius ?? this.cylinder.radius,
+      height: annotation.height ?? this.cylinder.height,
+    };
+  }
+
+  /** Number of views in which the person is visible. */
+  seenBy(annotation) {
+    return this.rectangles(annotation).filter((one) => one !== null).length;
+  }
+
+  metres(position) {
+    return this.grid.metres(position);
+  }
+
+  /** Ground point → image pixel, or null when it is not in front of the camera. */
+  toImage(index, ground, z = 0) {
+    return project(this.cameras[index], ground.x, ground.y, z);
+  }
+
+  /** Image pixel → ground point in metres, or null above the horizon. */
+  toGround(index, pixel) {
+    return backProject(this.cameras[index], pixel.x, pixel.y);
+  }
+
+  /** The position nearest to a ground point, or null outside the grid. */
+  positionAt(ground) {
+    const position = this.grid.position(ground.x, ground.y);
+    return position < 0 ? null : position;
+  }
+
+  /** The position some columns and rows further, or null outside the grid. */
+  stepped(position, columns, rows) {
+    const { columns: width, rows: height } = this.grid;
+    const column = (position % width) + columns;
+    const row = Math.floor(position / width) + rows;
+    return column < 0 || row < 0 || column >= width || row >= height ? null : row * width + column;
+  }
+}

@@ -1,0 +1,134 @@
+import { carriedOf } from "./annotation.js";
+import { copyPeople } from "./carry.js";
+import * as commands from "./commands.js";
+import { ask } from "./dialogs.js";
+import { gettext, ngettext } from "./messages.js";
+
+/**
+ * Going through the frames. Leaving a frame forwards says it is done; a frame nobody has been to starts with
+ * the people of the nearest earlier one, yellow.
+ */
+export class Walk {
+  constructor({ scene, store, history, saver, images, notices, finish, load }) {
+    Object.assign(this, { scene, store, history, saver, images, notices });
+    this._finish = finish;
+    this._load = load;
+    this._busy = false;
+    store.on("frame", () => this._prefetch());
+    this._prefetch();
+  }
+
+  get judging() {
+    return this.scene.mode === "assignment" && this.saver.readOnly === null;
+  }
+
+  next() {
+    return this._alone(async () => {
+      if (this.judging && !(await this._leaveForward())) return;
+      const next = this.store.neighbour(1);
+      if (next !== undefined) await this._open(next);
+      else if (this.scene.mode === "assignment") await this._finish();
+      else this.notices.say(gettext("This is the last frame"));
+    });
+  }
+
+  previous() {
+    return this._alone(async () => {
+      const previous = this.store.neighbour(-1);
+      if (previous === undefined) return this.notices.say(gettext("This is the first frame"));
+      await this._open(previous);
+    });
+  }
+
+  jump(number) {
+    return this._alone(() => this._open(number));
+  }
+
+  /** Take the server's newest state of this frame; edits not yet saved are saved first. */
+  reload() {
+    return this._alone(async () => {
+      const number = this.store.current;
+      if (!(await this.saver.flush())) return this.notices.say(gettext("Not loaded: there are edits still to be saved"));
+      await this._load(number, true);
+      this.notices.say(gettext("Frame loaded from the server"));
+    });
+  }
+
+  /** People for a frame that was never saved and has nobody yet. */
+  carryInto(number) {
+    const { people, nobody } = this.store.frame(number);
+    if (this.saver.readOnly !== null || people.size || nobody || this.saver.revision(number) > 0) return;
+    const earlier = this.store.numbers.slice(0, this.store.numbers.indexOf(number)).reverse();
+    const from = earlier.find((one) => this.store.frame(one).loaded && this.store.people(one).size);
+    if (from === undefined) return;
+    this.history.run(commands.bring(this.store, number, copyPeople(this.store.people(from))));
+  }
+
+  async _open(number) {
+    await this._load(number, false);
+    const selected = this.store.selection;
+    this.store.open(number);
+    if (this.scene.mode !== "tutorial") this.carryInto(number);
+    if (this.store.selection === null && selected !== null) this.store.select(selected);
+  }
+
+  /** @returns {Promise<boolean>} whether the frame may be left */
+  async _leaveForward() {
+    const number = this.store.current;
+    const waiting = carriedOf(this.store.people());
+    if (waiting.length) {
+      const answer = await this._askAboutCarried(waiting);
+      if (answer === "skip") return true;
+      if (answer !== "validate") return false;
+      this.history.run(commands.validate(this.store, waiting.map(({ person }) => person)));
+    }
+    const empty = this.store.people().size === 0;
+    if (empty && !this.store.frame().nobody && !(await this._askNobody())) return false;
+    const { done } = this.store.frame();
+    if (!done) this.store.apply([commands.flagEdit(this.store, number, { done: true, nobody: empty })]);
+    return true;
+  }
+
+  async _askAboutCarried(waiting) {
+    const answer = await ask({
+      title: ngettext("{n} person is still yellow", "{n} people are still yellow", waiting.length),
+      body: gettext("They stand where they stood in the frame before. Have you looked at all of them?"),
+      buttons: [
+        { id: "look", label: gettext("Look at the first one"), main: true },
+        { id: "validate", label: gettext("All are right: validate and go on") },
+        { id: "skip", label: gettext("Go on, come back later") },
+      ],
+    });
+    if (answer === "look") this.store.select(waiting[0].person);
+    return answer;
+  }
+
+  async _askNobody() {
+    const answer = await ask({
+      title: gettext("Nobody is marked in this frame"),
+      body: gettext("Is the ground area really empty in all views?"),
+      buttons: [
+        { id: "stay", label: gettext("No, stay here"), main: true },
+        { id: "nobody", label: gettext("Yes, nobody is there") },
+      ],
+    });
+    return answer === "nobody";
+  }
+
+  _prefetch() {
+    const { store } = this;
+    const wanted = [store.current, store.neighbour(1), store.neighbour(-1), store.neighbour(2)];
+    this.images.want(wanted.filter((number) => number !== undefined));
+  }
+
+  /** A question that is open, or a frame that is loading, is not asked or loaded twice. */
+  async _alone(work) {
+    if (this._busy) return;
+    this._busy = true;
+    try {
+      await work();
+    } finally {
+      this._busy = false;
+    }
+  }
+}
