@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from gtm_hit.models import Camera, Dataset
+from gtm_hit.models import Dataset
 from gtm_hit.ops.coverage import Coverage, shade
 
-MARGIN = 0.09  # of the grid's longer side, for axis figures and cameras beside the ground
+SHAPE = 1.9  # width by height of the place on the page
 FARTHEST = 0.45  # of the grid's longer side; a camera farther away is drawn at this distance
 
 
@@ -55,23 +55,40 @@ class GroundMap:
         self.turned = self.grid.rows > self.grid.columns
         along_x, along_y = self.grid.columns * self.grid.step, self.grid.rows * self.grid.step
         self.width, self.height = (along_y, along_x) if self.turned else (along_x, along_y)
-        self.unit = self.width / 100  # line widths and letters follow the size of the scene
+
+    @cached_property
+    def places(self) -> list[tuple[float, float]]:
+        """Where the cameras stand on the page."""
+        centres = [camera.calibrated.centre.tolist() for camera in self.dataset.cameras.all()]
+        return [self._near(*self._on_page(x, y)) for x, y, _ in centres]
 
     @cached_property
     def cameras(self) -> list[Marker]:
-        return [
-            self._marker(camera, middle)
-            for camera, middle in zip(self.dataset.cameras.all(), self.coverage.middles, strict=True)
-        ]
+        markers: list[Marker] = []
+        names = [camera.name for camera in self.dataset.cameras.all()]
+        for name, place, middle in zip(names, self.places, self.coverage.middles, strict=True):
+            markers.append(self._apart(self._marker(name, *place, middle), markers))
+        return markers
 
     @cached_property
+    def unit(self) -> float:
+        """A hundredth of the drawing's width: lines and letters look alike in every scene."""
+        left, top, right, bottom = self._bounds()
+        return max(right - left, (bottom - top) * SHAPE) / 84
+
+    @property
     def view_box(self) -> str:
-        margin = MARGIN * self.width
-        left = min([0.0, *(marker.x for marker in self.cameras)]) - margin
-        top = min([0.0, *(marker.y for marker in self.cameras)]) - margin
-        right = max([self.width, *(marker.x for marker in self.cameras)]) + margin
-        bottom = max([self.height, *(marker.y for marker in self.cameras)]) + margin
-        return f"{left:.3f} {top:.3f} {right - left:.3f} {bottom - top:.3f}"
+        left, top, right, bottom = self._bounds()
+        margin = 4.5 * self.unit
+        return (
+            f"{left - margin:.3f} {top - margin:.3f} "
+            f"{right - left + 2 * margin:.3f} {bottom - top + 2 * margin:.3f}"
+        )
+
+    def _bounds(self) -> tuple[float, float, float, float]:
+        across = [0.0, self.width, *(x for x, _ in self.places)]
+        down = [0.0, self.height, *(y for _, y in self.places)]
+        return min(across), min(down), max(across), max(down)
 
     @property
     def line(self) -> float:
@@ -118,18 +135,26 @@ class GroundMap:
         east, north = x - self.grid.origin_x, y - self.grid.origin_y
         return (north, east) if self.turned else (east, self.height - north)
 
-    def _marker(self, camera: Camera, middle: np.ndarray) -> Marker:
-        centre = camera.calibrated.centre
-        x, y = self._near(*self._on_page(float(centre[0]), float(centre[1])))
+    def _marker(self, name: str, x: float, y: float, middle: np.ndarray) -> Marker:
         turn = 0.0
         if np.isfinite(middle).all():
             to_x, to_y = self._on_page(float(middle[0]), float(middle[1]))
             turn = math.degrees(math.atan2(to_y - y, to_x - x))
         back = math.radians(turn) + math.pi
-        label = 2.6 * self.unit
+        away = 2.6 * self.unit
         return Marker(
-            camera.name, x, y, turn, x + label * math.cos(back), y + label * math.sin(back) + 0.6 * self.unit
+            name, x, y, turn, x + away * math.cos(back), y + away * math.sin(back) + 0.5 * self.unit
         )
+
+    def _apart(self, marker: Marker, others: list[Marker]) -> Marker:
+        """The same camera with its name moved down until it covers no other name."""
+        width, height = 3 * self.unit, 1.7 * self.unit
+        while any(
+            abs(marker.label_x - other.label_x) < width and abs(marker.label_y - other.label_y) < height
+            for other in others
+        ):
+            marker = replace(marker, label_y=marker.label_y + height / 2)
+        return marker
 
     def _near(self, x: float, y: float) -> tuple[float, float]:
         far = FARTHEST * self.width

@@ -9,7 +9,7 @@ const show = (job) => {
   const state = part("state");
   if (state.textContent !== job.label) state.textContent = job.label;
   state.className = `state ${job.state}`;
-  part("count").textContent = job.total ? `${job.done} / ${job.total}` : "";
+  part("count").textContent = job.total ? `${job.percent} %` : "";
   part("message").textContent = job.message;
   if (job.total) {
     part("progress").max = job.total;

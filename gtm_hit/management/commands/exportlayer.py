@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+from argparse import ArgumentParser
+from pathlib import Path
+from typing import Any
+
+from django.core.management.base import BaseCommand, CommandError
+
+from gtm_hit.management.progress import ProgressLine
+from gtm_hit.models import Layer
+from gtm_hit.ops import exporting
+
+
+class Command(BaseCommand):
+    help = "Write a layer to a folder and a zip beside it: annotations, calibration, manifest."
+
+    def add_arguments(self, parser: ArgumentParser) -> None:
+        parser.add_argument("slug", help="the dataset")
+        parser.add_argument("layer", help="the layer's name")
+        parser.add_argument("folder", type=Path, help="a new or empty folder, or one with an earlier export")
+
+    def handle(self, *, slug: str, layer: str, folder: Path, **options: Any) -> None:
+        found = Layer.objects.select_related("dataset").filter(dataset__slug=slug, name=layer).first()
+        if found is None:
+            names = ", ".join(Layer.objects.filter(dataset__slug=slug).values_list("name", flat=True))
+            raise CommandError(f"no layer {layer} in dataset {slug}; there are: {names or 'none'}")
+        folder = folder.absolute()
+        progress = ProgressLine(self.stderr)
+        try:
+            exporting.require_replaceable(folder)
+            partial = folder.with_name(f".{folder.name}.partial")
+            manifest = exporting.export_layer(found, folder, partial, progress)
+        except exporting.ExportError as error:
+            raise CommandError(str(error)) from error
+        except OSError as error:
+            raise CommandError(f"{error.filename or folder}: {error.strerror}") from error
+        finally:
+            progress.finish()
+        archive = exporting.archive_of(folder)
+        self.stdout.write(
+            f"{manifest.counts['frames']} frames, {manifest.counts['annotations']} annotations: {folder}\n"
+            f"{archive.stat().st_size / 1e6:.1f} MB, SHA-256 {exporting.sha256(archive)}: {archive}"
+        )

@@ -1,0 +1,177 @@
+"""A layer as files: a folder and a zip that appear complete or not at all.
+
+Everything is made beside its final place, in a folder named by job and attempt, and renamed at the end.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from django.conf import settings
+from django.contrib.auth.models import User
+
+from gtm_hit.formats.manifest import FileEntry, Manifest, read_manifest
+from gtm_hit.formats.problems import FormatError
+from gtm_hit.formats.stable_zip import write_folder_zip
+from gtm_hit.models import Job, Layer
+from gtm_hit.ops import jobs
+from gtm_hit.ops.export_folder import FRAMES, TABLE, ExportFolder, Report
+
+PACKING = "packing files"
+# Percents of the whole at which each phase begins and ends.
+SHARES = {TABLE: (0, 5), FRAMES: (5, 60), PACKING: (60, 100)}
+PARTIAL = re.compile(r".+\.partial-(?P<job>\d+)-(?P<attempt>\d+)")
+
+
+class ExportError(jobs.JobError):
+    """The layer cannot be exported, or not to there."""
+
+
+@dataclass(frozen=True)
+class Export:
+    """A finished export on this server's disk."""
+
+    folder: Path
+    archive: Path
+    archive_name: str
+    files: list[tuple[str, FileEntry]]
+
+    @property
+    def archive_bytes(self) -> int:
+        return self.archive.stat().st_size
+
+
+def start(layer: Layer, user: User | None = None) -> Job:
+    """Queue the export of a layer; the one under way when there is one."""
+    parameters = {"layer": layer.name, "layer_id": layer.pk}
+    return jobs.create_once(Job.Kind.EXPORT_LAYER, layer.dataset, parameters, user)
+
+
+def run(mine: jobs.Run) -> dict[str, Any]:
+    """The operation of an export job; its result goes onto the job's row."""
+    layer = Layer.objects.select_related("dataset").filter(pk=mine.job.parameters["layer_id"]).first()
+    if layer is None:
+        raise ExportError("The layer is no longer there.")
+    remove_dead_partials()
+    folder = settings.EXPORTS_ROOT / f"{layer.dataset.slug}-{layer.name}-{mine.job.pk}"
+    partial = folder.with_name(f"{folder.name}.partial-{mine.job.pk}-{mine.attempt}")
+
+    def report(phase: str, done: int, total: int) -> None:
+        start, end = SHARES[phase]
+        steps = start + (end - start) * done // max(total, 1)
+        mine.report(steps, 100, f"{phase}: {done} of {total}")
+
+    manifest = export_layer(layer, folder, partial, report, lambda: mine.confirm(100, 100))
+    return {
+        "folder": folder.name,
+        "archive_name": f"{archive_root(layer)}.zip",
+        "sha256": sha256(archive_of(folder)),
+        "counts": dict(manifest.counts),
+    }
+
+
+def export_layer(
+    layer: Layer, folder: Path, partial: Path, report: Report, confirm: Callable[[], None] | None = None
+) -> Manifest:
+    """Write a layer to `folder` and to the zip beside it, replacing an earlier export there.
+
+    `partial` is the folder for unfinished work, on the same disk; it is gone afterwards, whatever happens.
+    `confirm` is asked once before the first rename; what it raises leaves everything as it was.
+    """
+    with empty_folder(partial):
+        content, archive = partial / "content", partial / "content.zip"
+        content.mkdir()
+        manifest = ExportFolder(content, layer, report).write()
+        if not manifest.counts["frames"]:
+            raise ExportError(f"Nothing has been saved in the layer {layer.name} yet.")
+        write_folder_zip(
+            archive,
+            content,
+            archive_root(layer),
+            progress=lambda done, total: report(PACKING, done, total),
+        )
+        if confirm:
+            confirm()
+        replace(content, folder, partial / "before")
+        archive.replace(archive_of(folder))
+    return manifest
+
+
+def archive_root(layer: Layer) -> str:
+    """The folder inside the zip; without the job's number, so that equal layers give equal zips."""
+    return f"{layer.dataset.slug}-{layer.name}"
+
+
+def archive_of(folder: Path) -> Path:
+    return folder.with_name(f"{folder.name}.zip")
+
+
+@contextmanager
+def empty_folder(path: Path) -> Iterator[None]:
+    shutil.rmtree(path, ignore_errors=True)
+    path.mkdir(parents=True)
+    try:
+        yield
+    finally:
+        shutil.rmtree(path, ignore_errors=True)
+
+
+def replace(source: Path, target: Path, aside: Path) -> None:
+    """Rename a folder to a name that may be taken; a folder cannot be replaced in one step like a file."""
+    if target.exists():
+        target.replace(aside)
+    source.replace(target)
+
+
+def require_replaceable(folder: Path) -> None:
+    """Refuse a folder that holds anything but an earlier export."""
+    if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
+        return
+    try:
+        read_manifest(folder)
+    except (FormatError, OSError):
+        raise ExportError(f"{folder} is not empty and holds no export; choose another folder.") from None
+
+
+def remove_dead_partials() -> None:
+    """Remove unfinished work of jobs whose worker was killed."""
+    if not settings.EXPORTS_ROOT.is_dir():
+        return
+    found = [
+        (path, (int(match["job"]), int(match["attempt"])))
+        for path in settings.EXPORTS_ROOT.iterdir()
+        if (match := PARTIAL.fullmatch(path.name))
+    ]
+    if not found:
+        return
+    alive = set(Job.objects.filter(state=Job.State.RUNNING).values_list("pk", "attempts"))
+    for path, owner in found:
+        if owner not in alive:
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def finished(job: Job) -> Export | None:
+    """The files of an export job that is done, or None when they are not (or no longer) there."""
+    if job.state != Job.State.DONE or "folder" not in job.result:
+        return None
+    folder = settings.EXPORTS_ROOT / job.result["folder"]
+    archive = archive_of(folder)
+    try:
+        manifest = read_manifest(folder)
+    except FormatError:
+        return None
+    if not archive.is_file():
+        return None
+    return Export(folder, archive, job.result["archive_name"], sorted(manifest.files.items()))
+
+
+def sha256(path: Path) -> str:
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()

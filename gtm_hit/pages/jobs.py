@@ -1,0 +1,107 @@
+from __future__ import annotations
+
+from django.contrib import messages
+from django.core.paginator import Paginator
+from django.http import FileResponse, Http404, HttpRequest, HttpResponse, JsonResponse
+from django.shortcuts import get_object_or_404, redirect, render
+from django.urls import path
+from django.utils.translation import gettext as _
+from django.views.decorators.cache import never_cache
+from django.views.decorators.http import require_POST, require_safe
+
+from gtm_hit.models import Job
+from gtm_hit.ops import exporting, overview
+from gtm_hit.ops import jobs as job_ops
+from gtm_hit.pages.access import staff_only
+
+ROWS_PER_PAGE = 50
+DIGESTS_SHOWN = 200
+
+
+def job_or_404(pk: int) -> Job:
+    return get_object_or_404(overview.jobs(), pk=pk)
+
+
+@require_safe
+@never_cache
+@staff_only
+def job(request: HttpRequest, pk: int) -> HttpResponse:
+    shown = job_or_404(pk)
+    export = exporting.finished(shown)
+    context = {
+        "section": "exports",
+        "job": shown,
+        "percent": percent(shown),
+        "export": export,
+        "digests": export.files[:DIGESTS_SHOWN] if export else [],
+        "more_digests": max(len(export.files) - DIGESTS_SHOWN, 0) if export else 0,
+    }
+    return render(request, "staff/job.html", context)
+
+
+@require_safe
+@never_cache
+@staff_only
+def job_state(request: HttpRequest, pk: int) -> HttpResponse:
+    shown = job_or_404(pk)
+    return JsonResponse(
+        {
+            "state": shown.state,
+            "label": shown.get_state_display(),
+            "done": shown.done,
+            "total": shown.total,
+            "percent": percent(shown),
+            "message": shown.message,
+            "finished": shown.finished,
+        }
+    )
+
+
+@require_POST
+@staff_only
+def cancel(request: HttpRequest, pk: int) -> HttpResponse:
+    job_ops.cancel(job_or_404(pk))
+    return redirect("job", pk=pk)
+
+
+@require_POST
+@staff_only
+def retry(request: HttpRequest, pk: int) -> HttpResponse:
+    shown = job_or_404(pk)
+    if not shown.finished:
+        messages.warning(request, _("This job is still under way."))
+        return redirect("job", pk=pk)
+    return redirect("job", pk=job_ops.retry(shown, request.user).pk)
+
+
+@require_safe
+@staff_only
+def download(request: HttpRequest, pk: int) -> HttpResponse | FileResponse:
+    export = exporting.finished(job_or_404(pk))
+    if export is None:
+        raise Http404(_("This job has no file to download."))
+    return FileResponse(export.archive.open("rb"), as_attachment=True, filename=export.archive_name)
+
+
+@require_safe
+@staff_only
+def exports(request: HttpRequest) -> HttpResponse:
+    found = overview.jobs().filter(kind=Job.Kind.EXPORT_LAYER)
+    page = Paginator(found, ROWS_PER_PAGE).get_page(request.GET.get("page"))
+    return render(
+        request, "staff/exports.html", {"section": "exports", "page": page, "jobs": page.object_list}
+    )
+
+
+def percent(shown: Job) -> int:
+    return 100 * shown.done // shown.total if shown.total else 0
+
+
+urlpatterns = [
+    path("exports/", exports, name="exports"),
+    path("jobs/<int:pk>/", job, name="job"),
+    path("jobs/<int:pk>/state/", job_state, name="job-state"),
+    path("jobs/<int:pk>/cancel/", cancel, name="job-cancel"),
+    path("jobs/<int:pk>/retry/", retry, name="job-retry"),
+    path("jobs/<int:pk>/download/", download, name="job-download"),
+]

@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+from django.core.paginator import Paginator
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import get_object_or_404, redirect, render
+from django.urls import path
+from django.views.decorators.http import require_POST, require_safe
+
+from gtm_hit.models import Layer
+from gtm_hit.ops import exporting, overview
+from gtm_hit.pages.access import staff_only
+from gtm_hit.pages.datasets import summary_or_404
+
+ROWS_PER_PAGE = 100
+
+
+@require_safe
+@staff_only
+def dataset_layers(request: HttpRequest, slug: str) -> HttpResponse:
+    summary = summary_or_404(slug)
+    page = Paginator(overview.layers(summary.dataset), ROWS_PER_PAGE).get_page(request.GET.get("page"))
+    context = {
+        "section": "datasets",
+        "tab": "layers",
+        "dataset": summary.dataset,
+        "frames": summary.frames,
+        "page": page,
+        "jobs": overview.jobs().filter(dataset=summary.dataset)[:5],
+    }
+    return render(request, "staff/layers.html", context)
+
+
+@require_POST
+@staff_only
+def export_layer(request: HttpRequest, slug: str, name: str) -> HttpResponse:
+    layer = get_object_or_404(Layer.objects.select_related("dataset"), dataset__slug=slug, name=name)
+    return redirect("job", pk=exporting.start(layer, request.user).pk)
+
+
+urlpatterns = [
+    path("datasets/<slug:slug>/layers/", dataset_layers, name="dataset-layers"),
+    path("datasets/<slug:slug>/layers/<str:name>/export/", export_layer, name="export-layer"),
+]

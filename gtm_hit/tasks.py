@@ -1,0 +1,38 @@
+"""What a Celery worker does: ids in, one operation, progress on a row."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from celery import shared_task
+from celery.signals import worker_ready
+from django.utils import timezone
+
+from gtm_hit.models import Job
+from gtm_hit.ops import assignments, exporting, jobs
+
+OPERATIONS: dict[str, jobs.Operation] = {
+    Job.Kind.EXPORT_LAYER: exporting.run,
+}
+
+
+@shared_task
+def run_job(job_id: int) -> None:
+    jobs.run(job_id, OPERATIONS)
+
+
+@shared_task
+def requeue_lost_jobs() -> None:
+    jobs.requeue_lost(timezone.now())
+    exporting.remove_dead_partials()
+
+
+@shared_task
+def expire_leases() -> None:
+    assignments.expire_leases(timezone.now())
+
+
+@worker_ready.connect
+def look_for_lost_jobs(**kwargs: Any) -> None:
+    """A worker that comes back looks at once for what was lost meanwhile."""
+    requeue_lost_jobs.delay()
