@@ -12,7 +12,7 @@ from django.views.decorators.http import require_POST, require_safe
 from gtm_hit.models import Job
 from gtm_hit.ops import exporting, overview
 from gtm_hit.ops import jobs as job_ops
-from gtm_hit.pages.access import staff_only
+from gtm_hit.pages.access import StaffRequest, staff_only
 
 ROWS_PER_PAGE = 50
 DIGESTS_SHOWN = 200
@@ -66,7 +66,7 @@ def cancel(request: HttpRequest, pk: int) -> HttpResponse:
 
 @require_POST
 @staff_only
-def retry(request: HttpRequest, pk: int) -> HttpResponse:
+def retry(request: StaffRequest, pk: int) -> HttpResponse:
     shown = job_or_404(pk)
     if not shown.finished:
         messages.warning(request, _("This job is still under way."))

@@ -8,7 +8,7 @@ from django.views.decorators.http import require_POST, require_safe
 
 from gtm_hit.models import Layer
 from gtm_hit.ops import exporting, overview
-from gtm_hit.pages.access import staff_only
+from gtm_hit.pages.access import StaffRequest, staff_only
 from gtm_hit.pages.datasets import summary_or_404
 
 ROWS_PER_PAGE = 100
@@ -32,7 +32,7 @@ def dataset_layers(request: HttpRequest, slug: str) -> HttpResponse:
 
 @require_POST
 @staff_only
-def export_layer(request: HttpRequest, slug: str, name: str) -> HttpResponse:
+def export_layer(request: StaffRequest, slug: str, name: str) -> HttpResponse:
     layer = get_object_or_404(Layer.objects.select_related("dataset"), dataset__slug=slug, name=name)
     return redirect("job", pk=exporting.start(layer, request.user).pk)
 

@@ -39,5 +39,5 @@ class Command(BaseCommand):
         archive = exporting.archive_of(folder)
         self.stdout.write(
             f"{manifest.counts['frames']} frames, {manifest.counts['annotations']} annotations: {folder}\n"
-            f"{archive.stat().st_size / 1e6:.1f} MB, SHA-256 {exporting.sha256(archive)}: {archive}"
+            f"{archive.stat().st_size:,} bytes, SHA-256 {exporting.sha256(archive)}: {archive}"
         )

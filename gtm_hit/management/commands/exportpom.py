@@ -30,9 +30,7 @@ class Command(BaseCommand):
         rectangles = table(dataset, lambda done, total: progress("rectangle table", done, total))
         header = PomHeader(dataset.grid, dataset.cylinder, rectangles.cameras_count)
         try:
-            write_pom(
-                file, header, rectangles, lambda done, total: progress("writing positions", done, total)
-            )
+            write_pom(file, header, rectangles, lambda done, total: progress("writing lines", done, total))
         except OSError as error:
             raise CommandError(f"{error.filename or file}: {error.strerror}") from error
         finally:
