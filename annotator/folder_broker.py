@@ -17,14 +17,14 @@ class Channel(filesystem.Channel):
         for folder in (self.data_folder_in, self.data_folder_out, self.control_folder):
             Path(folder).mkdir(parents=True, exist_ok=True)
 
-    def _put(self, queue: str, message: dict[str, Any], **kwargs: Any) -> None:
+    def _put(self, queue: str, payload: dict[str, Any], **kwargs: Any) -> None:  # type: ignore[override]
         # Kombu opens the final name and then writes. A worker that looks in between reads an empty
         # message and stops for good, so the message appears under its name only when it is whole.
         # Names sort by the time they were sent, also across restarts of the machine.
         name = f"{time_ns():020d}_{uuid.uuid4()}.{queue}.msg"
         folder = Path(self.data_folder_out)
         partial = folder / f"partial-{name}.writing"
-        partial.write_text(dumps(message), encoding="utf-8")
+        partial.write_text(dumps(payload), encoding="utf-8")
         partial.replace(folder / name)
 
 
