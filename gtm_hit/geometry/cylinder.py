@@ -80,5 +80,5 @@ def fill_block(
 
 
 def is_visible(boxes: NDArray[np.int16]) -> NDArray[np.bool_]:
-    """Which of the boxes (..., 4) are visible: every visible one has xmax > 1, the others are all 0."""
-    return boxes[..., 2] > 1
+    """Which of the boxes (..., 4) are visible: those have an xmax above 0, the others are all 0."""
+    return boxes[..., 2] > 0

@@ -148,7 +148,8 @@ def _acceptable(camera: Camera, xmin: Array, ymin: Array, xmax: Array, ymax: Arr
     visible = (xmin < camera.width - 2) & (ymin < camera.height - 2) & (xmax > 1) & (ymax > 1)
     visible &= xmax - xmin <= ymax - ymin
     # Files and tables hold int16; a rectangle that does not fit must never wrap around into the picture.
-    return visible & (xmin >= INT16.min) & (ymin >= INT16.min) & (xmax <= INT16.max) & (ymax <= INT16.max)
+    visible &= (xmin > INT16.min - 1) & (ymin > INT16.min - 1)
+    return visible & (xmax < INT16.max + 1) & (ymax < INT16.max + 1)
 
 
 def _sum_of_four_lowest(v: Array) -> Array:

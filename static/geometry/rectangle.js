@@ -140,7 +140,7 @@ function acceptable(sides, camera) {
   const xmax = sides[2];
   const ymax = sides[3];
   const inside = xmin < camera.width - 2 && ymin < camera.height - 2 && xmax > 1 && ymax > 1;
-  const fits = xmin >= LOWEST && ymin >= LOWEST && xmax <= HIGHEST && ymax <= HIGHEST;
+  const fits = xmin > LOWEST - 1 && ymin > LOWEST - 1 && xmax < HIGHEST + 1 && ymax < HIGHEST + 1;
   return inside && fits && xmax - xmin <= ymax - ymin;
 }
 
