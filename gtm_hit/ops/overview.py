@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from django.db.models import Count, IntegerField, OuterRef, QuerySet, Subquery
+from django.db.models import Case, Count, IntegerField, OuterRef, QuerySet, Subquery, When
 from django.db.models.functions import Coalesce
 from django.utils import timezone
 
@@ -46,7 +46,10 @@ def dataset(slug: str) -> DatasetSummary | None:
 
 
 def layers(dataset: Dataset) -> QuerySet[Layer]:
-    """Layers with `frames_saved`, `frames_done`, `annotation_count`, `people` and `changed_at`."""
+    """Layers with `frames_saved`, `frames_done`, `annotation_count`, `people` and `changed_at`.
+
+    The many of the workers come after the few that were imported, released or made by staff.
+    """
     saved = LayerFrame.objects.filter(layer=OuterRef("pk"), revision__gte=1)
     annotations = Annotation.objects.filter(layer=OuterRef("pk"))
     return dataset.layers.annotate(
@@ -55,7 +58,8 @@ def layers(dataset: Dataset) -> QuerySet[Layer]:
         annotation_count=_count(annotations, "layer", "pk"),
         people=_count(annotations, "layer", "person", distinct=True),
         changed_at=Subquery(saved.order_by("-changed_at").values("changed_at")[:1]),
-    ).order_by("name")
+        of_worker=Case(When(kind=Layer.Kind.ASSIGNMENT, then=1), default=0),
+    ).order_by("of_worker", "name")
 
 
 @dataclass(frozen=True)
@@ -99,8 +103,7 @@ def batches(dataset: Dataset) -> QuerySet[Batch]:
 @dataclass(frozen=True)
 class BatchRow:
     batch: Batch
-    assignment: Assignment | None  # the newest; with `frames_done` and `people`
-    earlier: int
+    assignment: Assignment | None  # who holds it, else who had it last; with `frames_done` and `people`
 
     @property
     def state(self) -> str:
@@ -132,7 +135,7 @@ def with_assignments(batches: Iterable[Batch]) -> list[BatchRow]:
     for batch in batches:
         mine = newest.get(batch.pk, [])
         held = next((a for a in mine if a.state in Assignment.HOLDING), None)
-        rows.append(BatchRow(batch, held or next(iter(mine), None), max(len(mine) - 1, 0)))
+        rows.append(BatchRow(batch, held or next(iter(mine), None)))
     return rows
 
 

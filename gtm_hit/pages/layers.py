@@ -25,7 +25,6 @@ def dataset_layers(request: HttpRequest, slug: str) -> HttpResponse:
         "dataset": summary.dataset,
         "frames": summary.frames,
         "page": page,
-        "jobs": overview.jobs().filter(dataset=summary.dataset)[:5],
     }
     return render(request, "staff/layers.html", context)
 

@@ -11,6 +11,7 @@ const show = (job) => {
   state.className = `state ${job.state}`;
   part("count").textContent = job.total ? `${job.percent} %` : "";
   part("message").textContent = job.message;
+  if (job.state !== "queued") part("waiting")?.remove();
   if (job.total) {
     part("progress").max = job.total;
     part("progress").value = job.done;
