@@ -1,14 +1,18 @@
 from __future__ import annotations
 
+from typing import Any
+
 from django.urls import URLPattern, URLResolver, include, path, re_path
 from drf_spectacular.views import SpectacularAPIView, SpectacularSwaggerView
 
 # Importing it tells drf-spectacular about the tokens.
 from gtm_hit.api import frames, schema, tutorial  # noqa: F401
+from gtm_hit.api.authentication import IsStaff, StaffSession
 from gtm_hit.api.images import ImageView
 from gtm_hit.api.missing import MissingView
 from gtm_hit.api.submission import SubmitView
 
+staff: dict[str, Any] = {"authentication_classes": [StaffSession], "permission_classes": [IsStaff]}
 assignment = [
     path("scene/", frames.AssignmentScene.as_view()),
     path("frames/", frames.AssignmentFrames.as_view()),
@@ -35,7 +39,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("layers/<int:layer>/", include(layer)),
     path("tutorial/", include(learning)),
     re_path(r"^images/(?P<digest>[0-9a-f]{64})\.jpg$", ImageView.as_view()),
-    path("schema/", SpectacularAPIView.as_view(), name="schema"),
-    path("docs/", SpectacularSwaggerView.as_view(url_name="schema"), name="docs"),
+    path("schema/", SpectacularAPIView.as_view(**staff), name="schema"),
+    path("docs/", SpectacularSwaggerView.as_view(url_name="schema", **staff), name="docs"),
     re_path("", MissingView.as_view()),
 ]

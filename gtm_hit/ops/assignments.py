@@ -59,7 +59,11 @@ def lease_end(now: datetime | None = None) -> datetime:
 def expire_leases(now: datetime | None = None) -> int:
     """Return overdue batches to the pool; the number of leases that ended."""
     overdue = Assignment.objects.filter(state=State.LEASED, expires_at__lte=now or timezone.now())
-    return overdue.update(state=State.EXPIRED)
+    with transaction.atomic():
+        # Whoever else is ending one of these leases at this moment must not be waited for: two who
+        # wait for each other are a deadlock.
+        ended = list(overdue.select_for_update(skip_locked=True).values_list("pk", flat=True))
+        return Assignment.objects.filter(pk__in=ended).update(state=State.EXPIRED) if ended else 0
 
 
 def current(worker: Worker, dataset: Dataset) -> Assignment | None:
