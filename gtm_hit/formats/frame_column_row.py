@@ -19,7 +19,7 @@ from gtm_hit.formats.problems import ProblemList, shown
 MOST_BYTES = 512 * 2**20
 MOST = 2**31 - 1  # what a frame, column, row or person may be
 _NAMES = ("frame", "column", "row", "person")
-_NUMBER = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
+_NUMBER = re.compile(rb"[+-]?(?:[0-9]{1,40}(?:\.[0-9]{0,40})?|\.[0-9]{1,40})(?:[eE][+-]?[0-9]{1,3})?")
 
 Ids = NDArray[np.int64]
 
@@ -32,6 +32,7 @@ class FrameColumnRow:
     columns: Ids  # (N,)
     rows: Ids  # (N,)
     persons: Ids | None = None  # (N,)
+    lines: Ids | None = None  # (N,) where the rows stood in the file; None when they come from elsewhere
 
 
 def read(path: Path, *, persons: bool = False, may_be_empty: bool = False) -> FrameColumnRow:
@@ -54,7 +55,8 @@ def read(path: Path, *, persons: bool = False, may_be_empty: bool = False) -> Fr
         _report_repeated(lines, values, problems)
     problems.raise_if_any()
     table = np.array(values, dtype=np.int64).reshape(-1, expected)
-    return FrameColumnRow(table[:, 0], table[:, 1], table[:, 2], table[:, 3] if persons else None)
+    numbers = np.array([number for number, _ in lines], dtype=np.int64)
+    return FrameColumnRow(table[:, 0], table[:, 1], table[:, 2], table[:, 3] if persons else None, numbers)
 
 
 def write(path: Path, table: FrameColumnRow) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 from gtm_hit.formats.files import read_source, reason_of, write_bytes
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList, shown
+from gtm_hit.formats.strict_json import parse_json
 
 MANIFEST_NAME = "manifest.json"
 MOST_BYTES = 256_000_000
@@ -63,10 +64,7 @@ def read_manifest(folder: Path) -> Manifest:
 
 def parse_manifest(data: bytes, path: str) -> Manifest:
     problems = ProblemList(path)
-    try:
-        content = json.loads(data)
-    except (ValueError, RecursionError) as error:
-        raise FormatError([Problem(path, "", f"not JSON that can be read: {shown(str(error))}")]) from error
+    content = parse_json(data, path)
     parts = content if isinstance(content, dict) else {}
     if parts.get("version") != VERSION:
         problems.add("version", f"is {shown(parts.get('version'))} instead of {VERSION}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -16,11 +15,15 @@ import numpy as np
 
 from gtm_hit.formats.files import read_source, write_bytes
 from gtm_hit.formats.problems import FormatError, ProblemList, shown
+from gtm_hit.formats.strict_json import parse_json
 from gtm_hit.geometry.grid import Grid
 
 MOST_BYTES = 64_000_000
 MOST_ID = 2**31 - 1
 
+_LINE_BREAK = ",\n        "
+# Python's own encoder is the fast one only without indent; for plain values the separator does the same.
+_FLAT = json.JSONEncoder(separators=(_LINE_BREAK, ": "), allow_nan=False)
 _BOX_KEYS = ("viewNum", "xmin", "ymin", "xmax", "ymax")
 _PERSON_KEYS = {"personID", "positionID", "views"}
 _VIEW_VALUES = itemgetter(*_BOX_KEYS)
@@ -128,6 +131,8 @@ def _person_template(cameras: int) -> str:
 def _extra_text(extra: Mapping[str, Any]) -> str:
     if hidden := _PERSON_KEYS & extra.keys():
         raise ValueError(f"extra keys would hide {sorted(hidden)}")
+    if not any(isinstance(value, (dict, list, tuple)) for value in extra.values()):
+        return _LINE_BREAK + _FLAT.encode(extra)[1:-1]
     lines = json.dumps(extra, indent=4, allow_nan=False).splitlines()
     # Without the braces, each line two levels deeper: a person stands inside a list.
     return ",\n" + "\n".join(f"    {line}" for line in lines[1:-1])
@@ -155,26 +160,11 @@ def _people(
 
 
 def _entries(data: bytes, problems: ProblemList) -> list[Any]:
-    try:
-        entries = json.loads(data, parse_constant=_refuse_constant, parse_float=_finite)
-    except (ValueError, RecursionError) as error:
-        problems.add("", f"not JSON that can be read: {shown(str(error))}")
-        return []
+    entries = parse_json(data, problems.path)
     if isinstance(entries, list):
         return entries
     problems.add("", f"holds {shown(entries)} instead of a list of people")
     return []
-
-
-def _refuse_constant(word: str) -> None:
-    raise ValueError(f"{word} is not a number")
-
-
-def _finite(word: str) -> float:
-    value = float(word)
-    if not math.isfinite(value):
-        raise ValueError(f"{word} is too large")
-    return value
 
 
 def _id(entry: Mapping[str, Any], key: str, most: int, place: str, problems: ProblemList) -> int:
