@@ -1,0 +1,209 @@
+"""COCO boxes of one view: `images`, `annotations` with `bbox`, and one category, person.
+
+To COCO's own keys come `frame` and `camera` of an image, `person_id` and `position_id` of a box.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from gtm_hit.formats.delimited_text import MOST_WHOLE
+from gtm_hit.formats.files import read_source, replacing
+from gtm_hit.formats.problems import ProblemList, shown
+from gtm_hit.formats.strict_json import parse_json
+
+MOST_BYTES = 512 * 2**20
+CATEGORY = 1
+PERSON_NAMES = {"person", "pedestrian", "people", "human"}
+_PERSON_KEYS = ("person_id", "track_id")
+_FAR = 1e9  # pixels
+
+
+@dataclass(frozen=True)
+class CocoImage:
+    """`frame` and `camera` are None where the file does not say; then `file_name` has to tell."""
+
+    id: int
+    file_name: str
+    width: int
+    height: int
+    frame: int | None = None
+    camera: int | None = None
+
+
+@dataclass(frozen=True)
+class CocoBox:
+    """`box` is xmin, ymin, xmax, ymax in pixels, `image` the id of its image; ground truth has no `score`."""
+
+    id: int
+    image: int
+    box: tuple[float, float, float, float]
+    person: int | None = None
+    position: int | None = None
+    score: float | None = None
+
+
+@dataclass(frozen=True)
+class CocoFile:
+    images: tuple[CocoImage, ...]
+    boxes: tuple[CocoBox, ...]
+
+
+def read_coco(path: Path) -> CocoFile:
+    """Raises FormatError, as `parse_coco`."""
+    return parse_coco(read_source(path, MOST_BYTES), str(path))
+
+
+def parse_coco(data: bytes, path: str) -> CocoFile:
+    """Images and the boxes of people; boxes of other categories are left out.
+
+    Raises FormatError with everything wrong: keys missing or of another type, ids used twice, boxes of no
+    image or without area, a person twice in an image.
+    """
+    problems = ProblemList(path)
+    content = parse_json(data, path)
+    images = [_image(place, each, problems) for place, each in _entries(content, "images", problems)]
+    people = _person_categories(content)
+    boxes = [
+        _box(place, each, problems)
+        for place, each in _entries(content, "annotations", problems)
+        if people is None or each.get("category_id") in people
+    ]
+    _tell_repeated("images", [image.id for image in images], problems)
+    _tell_repeated("annotations", [box.id for box in boxes], problems)
+    _tell_repeated(
+        "images and people", [(box.image, box.person) for box in boxes if box.person is not None], problems
+    )
+    known = {image.id for image in images}
+    for box in boxes:
+        if box.image not in known:
+            problems.add(f"annotation {box.id}", f"image_id {box.image} is no image of this file")
+    problems.raise_if_any()
+    return CocoFile(tuple(images), tuple(boxes))
+
+
+def write_coco(path: Path, images: Iterable[CocoImage], boxes: Iterable[CocoBox]) -> None:
+    """Writes one image or box per line, as they come, so that a file of any size takes no memory."""
+    category = {"id": CATEGORY, "name": "person", "supercategory": "person"}
+    with replacing(path) as stream:
+        stream.write(b'{"images": [')
+        _write_list(stream, (_image_entry(image) for image in images))
+        stream.write(b'],\n"annotations": [')
+        _write_list(stream, (_box_entry(box) for box in boxes))
+        stream.write(b'],\n"categories": [' + json.dumps(category).encode() + b"]}\n")
+
+
+def _write_list(stream: BinaryIO, entries: Iterable[Mapping[str, Any]]) -> None:
+    for index, entry in enumerate(entries):
+        stream.write(b",\n" if index else b"\n")
+        stream.write(json.dumps(entry, allow_nan=False).encode())
+
+
+def _image_entry(image: CocoImage) -> dict[str, Any]:
+    entry = {"id": image.id, "file_name": image.file_name, "width": image.width, "height": image.height}
+    return entry | _given(frame=image.frame, camera=image.camera)
+
+
+def _box_entry(box: CocoBox) -> dict[str, Any]:
+    xmin, ymin, xmax, ymax = box.box
+    width, height = xmax - xmin, ymax - ymin
+    entry = {
+        "id": box.id,
+        "image_id": box.image,
+        "category_id": CATEGORY,
+        "bbox": [xmin, ymin, width, height],
+        "area": width * height,
+        "iscrowd": 0,
+    }
+    return entry | _given(person_id=box.person, position_id=box.position, score=box.score)
+
+
+def _given(**values: float | None) -> dict[str, Any]:
+    return {key: value for key, value in values.items() if value is not None}
+
+
+def _entries(content: Any, key: str, problems: ProblemList) -> list[tuple[str, dict[str, Any]]]:
+    entries = content.get(key) if isinstance(content, dict) else None
+    if not isinstance(entries, list):
+        problems.add("", f"has no list of {key}")
+        return []
+    for index, entry in enumerate(entries):
+        if not isinstance(entry, dict):
+            problems.add(f"{key}[{index}]", f"is {shown(entry)} instead of an object")
+    return [(f"{key}[{index}]", entry) for index, entry in enumerate(entries) if isinstance(entry, dict)]
+
+
+def _person_categories(content: Any) -> list[Any] | None:
+    """Ids of the categories people are in; None when the file names no categories."""
+    categories = content.get("categories") if isinstance(content, dict) else None
+    if not isinstance(categories, list):
+        return None
+    named = [each for each in categories if isinstance(each, dict)]
+    return [each.get("id") for each in named if str(each.get("name")).lower() in PERSON_NAMES]
+
+
+def _image(place: str, entry: dict[str, Any], problems: ProblemList) -> CocoImage:
+    name = entry.get("file_name")
+    if not isinstance(name, str) or not name:
+        problems.add(place, f"file_name is {shown(name)} instead of a name")
+    return CocoImage(
+        _whole(entry, "id", place, problems) or 0,
+        str(name),
+        _whole(entry, "width", place, problems) or 0,
+        _whole(entry, "height", place, problems) or 0,
+        _whole(entry, "frame", place, problems, needed=False),
+        _whole(entry, "camera", place, problems, needed=False),
+    )
+
+
+def _box(place: str, entry: dict[str, Any], problems: ProblemList) -> CocoBox:
+    bbox = entry.get("bbox")
+    box = (0.0, 0.0, 0.0, 0.0)
+    if not (isinstance(bbox, list) and len(bbox) == 4 and all(_is_number(value) for value in bbox)):
+        problems.add(place, f"bbox is {shown(bbox)} instead of four numbers")
+    elif bbox[2] <= 0 or bbox[3] <= 0:
+        problems.add(place, f"bbox {shown(bbox)} has no area")
+    else:
+        box = (bbox[0], bbox[1], bbox[0] + bbox[2], bbox[1] + bbox[3])
+    score = entry.get("score")
+    if score is not None and not _is_number(score):
+        problems.add(place, f"score is {shown(score)} instead of a number")
+    person = next((key for key in _PERSON_KEYS if entry.get(key) is not None), _PERSON_KEYS[0])
+    return CocoBox(
+        _whole(entry, "id", place, problems) or 0,
+        _whole(entry, "image_id", place, problems) or 0,
+        box,
+        _whole(entry, person, place, problems, needed=False),
+        _whole(entry, "position_id", place, problems, needed=False),
+        score,
+    )
+
+
+def _is_number(value: Any) -> bool:
+    return type(value) in (int, float) and abs(value) <= _FAR
+
+
+def _whole(
+    entry: dict[str, Any], key: str, place: str, problems: ProblemList, needed: bool = True
+) -> int | None:
+    value = entry.get(key)
+    if value is None and not needed:
+        return None
+    if type(value) is int and 0 <= value <= MOST_WHOLE:
+        return value
+    problems.add(place, f"{key} is {shown(value)} instead of an integer from 0 to {MOST_WHOLE}")
+    return None
+
+
+def _tell_repeated(place: str, ids: list[Any], problems: ProblemList) -> None:
+    if problems:
+        return  # what stands in for wrong ids would look like repetitions
+    seen = set()
+    for each in ids:
+        if each in seen:
+            problems.add(place, f"{shown(each)} is there twice")
+        seen.add(each)
