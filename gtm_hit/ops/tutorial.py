@@ -16,7 +16,7 @@ from gtm_hit.geometry.cylinder import rectangles
 from gtm_hit.models import Annotation, Dataset, Frame, Layer, Worker
 from gtm_hit.ops.annotation_rules import Row, checked
 from gtm_hit.ops.annotations import FrameState
-from gtm_hit.ops.tutorial_exercise import Exercise, Positions, TooFewPeople, between, make_exercise
+from gtm_hit.ops.tutorial_exercise import Exercise, NoRoom, Positions, between, make_exercise
 
 FRAMES = 3
 NEAR_ENOUGH = 0.15  # metres
@@ -91,7 +91,7 @@ def load() -> Tutorial:
             dataset.grid,
             lambda places: views_of(dataset, places),
         )
-    except TooFewPeople as error:
+    except NoRoom as error:
         raise NoTutorial(str(error)) from error
     return Tutorial(dataset, frames, exercise)
 

@@ -21,8 +21,8 @@ Views = Callable[[list[int]], NDArray[np.int64]]
 """In how many cameras each position is visible, (N,)."""
 
 
-class TooFewPeople(ValueError):
-    """Frames in which the tutorial's mistakes cannot be made."""
+class NoRoom(ValueError):
+    """Frames in which the tutorial's mistakes cannot be made: too few people, or too small a grid."""
 
 
 @dataclass(frozen=True)
@@ -56,10 +56,10 @@ class Exercise:
 
 
 def make_exercise(numbers: list[int], truth: list[Positions], grid: Grid, views: Views) -> Exercise:
-    """Raises TooFewPeople."""
+    """Raises NoRoom."""
+    if len(truth) != 3 or len(truth[0]) < 3 or len(truth[0].keys() & truth[1].keys()) < 2:
+        raise NoRoom("the tutorial needs three frames and three people")
     first, second = truth[0], truth[1]
-    if len(truth) != 3 or len(first) < 3 or len(first.keys() & second.keys()) < 2:
-        raise TooFewPeople("the tutorial needs three frames and three people")
     missing, shifted = clearest(first, grid, views)[:2]
     draft = Exercise(
         numbers=numbers,
@@ -100,6 +100,8 @@ def beside(person: int, people: Positions, grid: Grid) -> int:
     angles = np.arange(8) * np.pi / 4
     candidates = grid.position(here + SHIFT * np.column_stack((np.cos(angles), np.sin(angles))))
     candidates = candidates[candidates >= 0]
+    if not len(candidates):
+        raise NoRoom(f"a grid of {grid.extent} metres has no room for the tutorial's mistakes")
     others = [place for other, place in people.items() if other != person]
     room = between(candidates.tolist(), others, grid).min(axis=1)
     return int(candidates[np.argmax(room)])

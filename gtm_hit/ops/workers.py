@@ -9,11 +9,12 @@ from django.utils.translation import gettext as _
 from gtm_hit.models import Worker
 
 MAX_ID = 255
+MAX_PLATFORM = 40
 REFUSED = {"Cc", "Cs", "Zl", "Zp"}  # control characters, lone surrogates, line and paragraph separators
 
 
 class InvalidWorkerId(ValueError):
-    """An id no platform gives out; the message says why in plain words."""
+    """An id no platform gives out, or no platform; the message says why in plain words."""
 
 
 def clean_external_id(text: str) -> str:
@@ -26,6 +27,15 @@ def clean_external_id(text: str) -> str:
     if any(unicodedata.category(character) in REFUSED for character in cleaned):
         raise InvalidWorkerId(_("The worker ID contains characters that cannot be printed."))
     return cleaned
+
+
+def clean_platform(name: str) -> str:
+    """Raises InvalidWorkerId."""
+    if not name.isascii() or not name.replace("-", "").replace("_", "").isalnum():
+        raise InvalidWorkerId(_("%(name)r is no platform: use letters, digits, - and _.") % {"name": name})
+    if len(name) > MAX_PLATFORM:
+        raise InvalidWorkerId(_("A platform's name has at most %(most)d letters.") % {"most": MAX_PLATFORM})
+    return name
 
 
 def find(platform: str, external_id: str) -> Worker | None:

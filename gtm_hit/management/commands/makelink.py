@@ -2,9 +2,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from django.core.exceptions import ValidationError
 from django.core.management.base import BaseCommand, CommandError, CommandParser
-from django.core.validators import validate_slug
 from django.urls import reverse
 
 from gtm_hit.models import Dataset
@@ -27,12 +25,8 @@ class Command(BaseCommand):
         if dataset is None:
             raise CommandError(f"There is no dataset {slug!r}.")
         try:
-            validate_slug(platform)
+            platform = workers.clean_platform(platform)
             external_id = workers.clean_external_id(worker) if worker else None
-        except ValidationError:
-            raise CommandError(
-                f"A platform's name has letters, digits, - and _ only, not {platform!r}."
-            ) from None
         except workers.InvalidWorkerId as error:
             raise CommandError(str(error)) from error
         token = tokens.entry_token(dataset, platform, external_id)

@@ -1,0 +1,50 @@
+from __future__ import annotations
+
+from io import StringIO
+
+import pytest
+from django.core.management import CommandError, call_command
+
+from gtm_hit.models import Dataset, Worker
+from gtm_hit.ops import tokens
+from tests.work_scene import make_dataset
+
+
+@pytest.fixture
+def dataset(db: None) -> Dataset:
+    return make_dataset()
+
+
+def run(*arguments: str) -> str:
+    output = StringIO()
+    call_command("makelink", *arguments, stdout=output)
+    return output.getvalue().strip()
+
+
+def entry(link: str) -> tokens.Entry:
+    return tokens.read_entry(link.split("/")[-2])
+
+
+def test_it_prints_the_whole_link(dataset: Dataset) -> None:
+    link = run("square", "--base-url", "https://marker.example/", "--platform", "panel")
+    assert link.startswith("https://marker.example/join/")
+    assert entry(link) == tokens.Entry(dataset, "panel", None)
+
+
+def test_a_personal_link_names_its_worker_and_creates_nothing(dataset: Dataset) -> None:
+    assert entry(run("square", "--worker", "Ä 1")).external_id == "Ä 1"
+    assert not Worker.objects.exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["nowhere"], "'nowhere'"),
+        (["square", "--platform", "my panel"], "'my panel'"),
+        (["square", "--platform", "p" * 41], "at most 40"),
+        (["square", "--worker", "x" * 256], "255 characters"),
+    ],
+)
+def test_what_makes_no_link_is_explained(dataset: Dataset, arguments: list[str], said: str) -> None:
+    with pytest.raises(CommandError, match=said):
+        run(*arguments)
