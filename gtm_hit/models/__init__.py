@@ -3,10 +3,13 @@ from __future__ import annotations
 from gtm_hit.models.annotation import Annotation, AppendOnlyError, Layer, LayerFrame, Save
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
+from gtm_hit.models.release import Release
+from gtm_hit.models.token import ApiToken
 from gtm_hit.models.work import Assignment, Batch, Worker
 
 __all__ = [
     "Annotation",
+    "ApiToken",
     "AppendOnlyError",
     "Assignment",
     "Batch",
@@ -17,6 +20,7 @@ __all__ = [
     "Job",
     "Layer",
     "LayerFrame",
+    "Release",
     "Save",
     "Worker",
 ]

@@ -19,8 +19,20 @@ class Job(models.Model):
 
     class Kind(models.TextChoices):
         EXPORT_LAYER = "export_layer", "export of a layer"
+        IMPORT_DATASET = "import_dataset", "import of a dataset"
+        IMPORT_VIDEOS = "import_videos", "import of videos"
+        IMPORT_ANNOTATIONS = "import_annotations", "import of annotations"
+        REPLACE_CALIBRATION = "replace_calibration", "change of calibration"
+        MAKE_RELEASE = "make_release", "release"
 
-    dataset = models.ForeignKey(Dataset, on_delete=models.CASCADE, related_name="jobs")
+    dataset = models.ForeignKey(
+        Dataset,
+        null=True,
+        blank=True,
+        on_delete=models.CASCADE,
+        related_name="jobs",
+        help_text="empty while an import has not made it yet",
+    )
     kind = models.CharField(max_length=40, choices=Kind.choices)
     parameters = models.JSONField(default=dict)
     state = models.CharField(max_length=12, choices=State.choices, default=State.QUEUED)
