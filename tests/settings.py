@@ -8,7 +8,7 @@ import tempfile
 os.environ.setdefault("SECRET_KEY", "tests-" + "k" * 40)
 os.environ.setdefault("DATA_DIR", tempfile.mkdtemp(prefix="gtm-tests-"))
 
-from annotator.settings import *  # noqa: E402, F403
+from annotator.settings import *  # noqa: F403
 
 PASSWORD_HASHERS = ["django.contrib.auth.hashers.MD5PasswordHasher"]
 # Names without hashes: no test has to collect the static files first.
@@ -16,3 +16,5 @@ STORAGES = {
     **STORAGES,  # noqa: F405
     "staticfiles": {"BACKEND": "django.contrib.staticfiles.storage.StaticFilesStorage"},
 }
+# A file, as in use: SQLite in shared memory refuses instead of waiting when several threads write.
+DATABASES["default"]["TEST"] = {"NAME": str(DATA_DIR / "tests.sqlite3")}  # noqa: F405

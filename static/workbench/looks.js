@@ -7,6 +7,7 @@ export const CYAN = "#2fe3f7";
 export const WHITE = "#ffffff";
 export const YELLOW = "#ffd21f";
 export const HALO = "rgba(6, 12, 18, 0.75)";
+export const RIM = "rgba(6, 12, 18, 0.5)"; // thin, around every line: light lines stay visible on light pavement
 export const INK = "#08131a";
 
 export const LOOKS = {
@@ -14,8 +15,8 @@ export const LOOKS = {
   carried: { name: "carried", colour: YELLOW, width: 1.75, dash: [6, 4], selected: false },
   selected: { name: "selected", colour: CYAN, width: 2, dash: [], selected: true },
   selectedCarried: { name: "selectedCarried", colour: CYAN, width: 2, dash: [7, 5], selected: true },
-  ghost: { name: "ghost", colour: CYAN, width: 1.25, dash: [2, 3], selected: false },
-  refused: { name: "refused", colour: "#ff8f86", width: 1.25, dash: [2, 3], selected: false },
+  ghost: { name: "ghost", colour: CYAN, width: 1.75, dash: [3, 3], selected: false },
+  refused: { name: "refused", colour: "#ff8f86", width: 1.75, dash: [3, 3], selected: false },
 };
 
 export function lookOf(annotation, selected) {

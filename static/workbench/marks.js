@@ -1,5 +1,5 @@
 /** Drawing in CSS pixels of a pane. Each function only draws; what to draw is decided elsewhere. */
-import { HALO, INK } from "./looks.js";
+import { HALO, INK, RIM } from "./looks.js";
 
 const LABEL_HEIGHT = 15;
 const HANDLE = 5;
@@ -11,8 +11,8 @@ export function drawBox(ctx, box, look, label, opacity = 1) {
   const [x, y] = [box.xmin, box.ymin];
   const [width, height] = [box.xmax - box.xmin, box.ymax - box.ymin];
   ctx.globalAlpha = opacity;
-  ctx.lineWidth = look.width + 2;
-  ctx.strokeStyle = HALO;
+  ctx.lineWidth = look.width + 1.5;
+  ctx.strokeStyle = RIM;
   ctx.setLineDash([]);
   ctx.strokeRect(x, y, width, height);
   ctx.lineWidth = look.width;
@@ -21,7 +21,12 @@ export function drawBox(ctx, box, look, label, opacity = 1) {
   ctx.strokeRect(x, y, width, height);
   if (look.selected) drawSelection(ctx, x, y, width, height, look);
   ctx.globalAlpha = 1;
-  if (label) drawLabel(ctx, x + width / 2, y - 3, label, look);
+  if (label) drawLabel(ctx, x + width / 2, labelBottom(box), label, look);
+}
+
+/** Above the box; inside it where the box reaches out of the pane. */
+function labelBottom(box) {
+  return Math.max(box.ymin - 3, Math.min(LABEL_HEIGHT + 2, box.ymax));
 }
 
 export function labelWidth(label) {
@@ -103,7 +108,7 @@ export function boxBounds(box, label) {
     xmin: Math.min(box.xmin, middle - half) - MARGIN,
     ymin: box.ymin - MARGIN - (label ? LABEL_HEIGHT : 0),
     xmax: Math.max(box.xmax, middle + half) + MARGIN,
-    ymax: box.ymax + MARGIN,
+    ymax: Math.max(box.ymax, label ? labelBottom(box) : box.ymax) + MARGIN,
   };
 }
 

@@ -14,7 +14,7 @@ from gtm_hit.formats.camera_json import load_cameras
 from gtm_hit.geometry.camera import Camera as CalibratedCamera
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.geometry.grid import Grid
-from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image
+from gtm_hit.models import Annotation, Assignment, Camera, Dataset, Frame, Image, Layer
 from gtm_hit.ops import assignments, batches, images, tokens, workers
 from gtm_hit.ops.annotations import save_frame
 from tests.conftest import REPOSITORY
@@ -127,7 +127,9 @@ def image_row(frame: Frame, camera: Camera, positions: NDArray[np.int64]) -> Ima
     )
 
 
-def annotate(assignment: Assignment, frame: Frame, positions: NDArray[np.int64], state: str = "validated") -> None:
+def annotate(
+    assignment: Assignment, frame: Frame, positions: NDArray[np.int64], state: str = "validated"
+) -> None:
     """Save a frame as people 1, 2, 3 … at the positions, as the worker would have."""
     rows = [
         {"person": index + 1, "position": int(position), "state": state, "origin": "clicked"}
@@ -135,3 +137,15 @@ def annotate(assignment: Assignment, frame: Frame, positions: NDArray[np.int64],
         for index, position in enumerate(positions)
     ]
     save_frame(assignment.layer, frame, assignment.worker, uuid.uuid4(), 0, rows)
+
+
+def tell_truth(street: Street) -> None:
+    """The hidden layer the tutorial is judged against."""
+    layer = Layer.objects.create(
+        dataset=street.dataset, name="truth", kind=Layer.Kind.GROUND_TRUTH, hidden=True
+    )
+    Annotation.objects.bulk_create(
+        Annotation(layer=layer, frame=frame, person=person + 1, position=int(position))
+        for frame, positions in zip(street.frames, street.truth, strict=True)
+        for person, position in enumerate(positions)
+    )
