@@ -24,6 +24,16 @@ class Command(BaseCommand):
         "nothing is imported. A second run adds only frames and annotation files that are new."
     )
 
+    def run_from_argv(self, argv: list[str]) -> None:
+        # argparse takes "-3,-9" for an option unless it is joined to the one it belongs to.
+        joined: list[str] = []
+        for word in argv:
+            if joined and joined[-1] == "--origin":
+                joined[-1] += f"={word}"
+            else:
+                joined.append(word)
+        super().run_from_argv(joined)
+
     def add_arguments(self, parser: CommandParser) -> None:
         parser.add_argument("slug", help="the dataset's name in addresses, for example wildtrack")
         parser.add_argument("folder", type=Path, help="the dataset's folder")

@@ -72,7 +72,9 @@ def tell_wrong_unit(cameras: Sequence[Camera], grid: Grid, unit: str, problems: 
         )
 
 
-def tell_differences(cameras: Sequence[Camera], rows: Sequence[CameraRow], problems: ProblemList) -> None:
+def tell_differences(
+    cameras: Sequence[Camera], rows: Sequence[CameraRow], unit: str, problems: ProblemList
+) -> None:
     """Cameras that are not those the dataset was imported with."""
     names, known = [camera.name for camera in cameras], [row.name for row in rows]
     if names != known:
@@ -89,7 +91,7 @@ def tell_differences(cameras: Sequence[Camera], rows: Sequence[CameraRow], probl
             if not _equal(getattr(camera, name), getattr(there, name))
         ]
         if different:
-            hint = _unit_hint(camera, there) if different == ["tvec"] else ""
+            hint = _unit_hint(camera, there, unit) if different == ["tvec"] else ""
             problems.add(
                 f"camera {camera.name}",
                 f"the dataset was imported with another calibration ({', '.join(different)} differ){hint}",
@@ -153,8 +155,8 @@ def _equal(first: object, second: object) -> bool:
     return one.shape == other.shape and np.allclose(one, other, rtol=1e-9, atol=1e-12)
 
 
-def _unit_hint(camera: Camera, there: Camera) -> str:
-    for factor, unit in ((0.01, "cm"), (0.001, "mm")):
-        if _equal(camera.tvec * factor, there.tvec):
-            return f": tvec looks like {UNITS[unit]}, use --tvec-unit {unit}"
+def _unit_hint(camera: Camera, there: Camera, unit: str) -> str:
+    for likely, metres in METRES_PER.items():
+        if _equal(camera.tvec / METRES_PER[unit] * metres, there.tvec):
+            return f": tvec looks like {UNITS[likely]}, use --tvec-unit {likely}"
     return ""

@@ -77,7 +77,7 @@ def import_dataset(options: ImportOptions, progress: Progress = no_progress) -> 
     Raises ImportFailed with all problems of the run. Files of derivatives it made are deleted again then;
     the database is written in one transaction at the end.
     """
-    problems = ProblemList(options.folder)
+    problems = ProblemList("")
     written: set[str] = set()
     try:
         reading = _read(options, progress, problems)
@@ -93,10 +93,15 @@ def import_dataset(options: ImportOptions, progress: Progress = no_progress) -> 
         if isinstance(error, IntegrityError):
             reason = "was changed by another import in the meantime; run this one again"
             raise ImportFailed((Problem(options.slug, "", reason),)) from error
+        if isinstance(error, OSError):
+            problem = Problem(str(error.filename or ""), "", error.strerror or type(error).__name__)
+            raise ImportFailed((problem,)) from error
         raise
 
 
 def _read(options: ImportOptions, progress: Progress, problems: ProblemList) -> Reading:
+    if not options.folder.is_dir():
+        problems.add("options", f"no such folder: {options.folder}")
     existing = Dataset.objects.filter(slug=options.slug).first()
     dataset = scene(options, existing, problems)
     layer = _existing_layer(options, existing, problems)
@@ -111,7 +116,7 @@ def _read(options: ImportOptions, progress: Progress, problems: ProblemList) -> 
     cameras = [view.camera for view in views]
     if len(cameras) == len(layout.cameras):
         if existing is not None:
-            tell_differences(cameras, known, problems)
+            tell_differences(cameras, known, options.unit, problems)
         else:
             tell_wrong_unit(cameras, dataset.grid, options.unit, problems)
     known_images = _known_images(existing)
@@ -235,12 +240,13 @@ def _make(
     if not only_check:
         _make_table(reading, progress, problems)
     wanted = {*reading.numbers, *(number for _camera, number in reading.known_images)}
+    told = {problem.path for problem in problems.found}
     undistorts = {view.camera.name: view.undistort for view in reading.views}
     pictures = [
         Picture((index, number), path, undistorts.get(name), reading.known_images.get((index, number)))
         for index, name in enumerate(reading.layout.cameras)
         for number, path in reading.layout.images[name].items()
-        if number in wanted
+        if number in wanted and str(path) not in told
     ]
     # By frame: all views of one instant are close together on most disks, and so are their derivatives.
     pictures.sort(key=lambda picture: (picture.key[1], picture.key[0]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypedDict
@@ -9,7 +10,8 @@ from typing import TypedDict
 from django.core.exceptions import ValidationError
 
 from gtm_hit.formats.problems import ProblemList, shown
-from gtm_hit.geometry.cylinder import FootRule
+from gtm_hit.geometry.cylinder import CylinderError, FootRule
+from gtm_hit.geometry.grid import GridError
 from gtm_hit.models import Dataset, Layer
 
 
@@ -80,6 +82,10 @@ DEFAULTS = SceneValues(
     frame_step=1,
 )
 
+# 110 m × 110 m at 2.5 cm; the table of one camera has 160 MB then. More is a slip of the fingers.
+MOST_POSITIONS = 20_000_000
+DIGITS = range(1, 10)
+
 # A wrong guess here would shift every position or change every speed without anybody noticing.
 REQUIRED = {
     "columns": "--grid COLUMNSxROWS",
@@ -133,12 +139,28 @@ def scene(options: ImportOptions, existing: Dataset | None, problems: ProblemLis
     dataset = Dataset(
         slug=options.slug, name=options.name or options.slug, undistorted=options.undistort, **values
     )
+    _tell_impossible(dataset, problems)
+    return dataset
+
+
+def _tell_impossible(dataset: Dataset, problems: ProblemList) -> None:
     try:
         dataset.full_clean(validate_unique=False)
     except ValidationError as error:
         for name, messages in error.message_dict.items():
             problems.add("options", f"{name}: {' '.join(messages)}")
-    return dataset
+        return
+    try:
+        positions, _cylinder = dataset.grid.count, dataset.cylinder
+    except (GridError, CylinderError) as error:
+        problems.add("options", str(error))
+        return
+    if positions > MOST_POSITIONS:
+        problems.add("options", f"--grid has more than {MOST_POSITIONS} positions")
+    if not math.isfinite(dataset.frame_rate):
+        problems.add("options", f"frame_rate must be finite, not {dataset.frame_rate}")
+    if dataset.annotation_digits not in DIGITS:
+        problems.add("options", f"annotation_digits must be {DIGITS[0]} to {DIGITS[-1]}")
 
 
 def _tell_contradictions(options: ImportOptions, existing: Dataset, problems: ProblemList) -> None:
