@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
-from gtm_hit.metrics.annotations import Annotations, Floats, Ids, MetricsError
+from gtm_hit.metrics.annotations import Annotations, Floats, MetricsError
+from gtm_hit.metrics.identities import going_together
 from gtm_hit.metrics.matching import RADIUS, Matches, match
 
 
@@ -21,7 +21,7 @@ class PairAgreement:
     matched: int  # pairs
     median_distance: float  # metres over the matched pairs; NaN without
     p95_distance: float  # metres
-    same_identity: int  # matched pairs whose identities go together, see `same_identities`
+    same_identity: int  # matched pairs whose identities go together, see `going_together`
 
     @property
     def matched_share(self) -> float:
@@ -73,19 +73,8 @@ def evaluate(layers: Mapping[str, Annotations], radius: float = RADIUS) -> Agree
     return Agreement(_overall(pairs, matches), pairs, workers)
 
 
-def same_identities(first: Ids, second: Ids) -> int:
-    """How many of the pairs (K,) of identities go together under the best one-to-one renaming of people."""
-    if not len(first):
-        return 0
-    _, rows = np.unique(first, return_inverse=True)
-    _, columns = np.unique(second, return_inverse=True)
-    together = np.zeros((rows.max() + 1, columns.max() + 1), dtype=np.int64)
-    np.add.at(together, (rows, columns), 1)
-    return int(together[linear_sum_assignment(together, maximize=True)].sum())
-
-
 def _pair(first: Annotations, second: Annotations, matches: Matches) -> PairAgreement:
-    same = same_identities(first.identities()[matches.truth], second.identities()[matches.found])
+    same = going_together(first.identities()[matches.truth], second.identities()[matches.found])
     return _summed(len(first) + len(second), matches.distances, same)
 
 

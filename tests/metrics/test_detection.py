@@ -14,7 +14,7 @@ from tests.metrics.strategies import layers
 
 
 def worked() -> tuple[Annotations, Annotations]:
-    """Frame 0: one exact, one 0.3 m off, one missed. Frame 5: 0.1 m off and extra. Frame 10: an extra."""
+    """Frame 0: one exact, one 0.3 m off, one missed. Frame 5: one 0.1 m off, an extra. Frame 10: an extra."""
     truth = Annotations([0, 0, 0, 5], [[0, 0], [2, 0], [4, 0], [1, 1]])
     found = Annotations([0, 0, 5, 5, 10], [[0, 0], [2, 0.3], [1.1, 1], [8, 8], [0, 0]])
     return truth, found

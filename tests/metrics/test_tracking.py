@@ -4,12 +4,14 @@ import math
 from collections import Counter
 from itertools import permutations
 
+import motmetrics
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 
 from gtm_hit.metrics import tracking
-from gtm_hit.metrics.annotations import Annotations, MetricsError
+from gtm_hit.metrics.annotations import Annotations, MetricsError, by_frame
+from gtm_hit.metrics.matching import distances_between
 from tests.metrics.scenes import crossing_people
 from tests.metrics.strategies import layers
 
@@ -42,6 +44,20 @@ def test_idf1_is_that_of_the_best_renaming(truth: Annotations, found: Annotation
     assume(len(truth) and len(found))
     score = tracking.evaluate(truth, found, 0.3).score
     assert score.idf1 == pytest.approx(idf1_by_trying_all(truth, found, 0.3))
+
+
+@pytest.mark.parametrize("swap_every", [3, 7, 100])
+@pytest.mark.parametrize("wobble", [0.05, 0.3])
+def test_idf1_is_that_of_motmetrics(wobble: float, swap_every: int) -> None:
+    truth, found = crossing_people(people=9, frames=60, wobble=wobble, swap_every=swap_every)
+    events = motmetrics.MOTAccumulator()
+    for number, rows, others in by_frame(truth, found):
+        distances = distances_between(truth.xy[rows], found.xy[others])
+        distances[distances >= 0.5] = np.nan
+        events.update(truth.persons[rows], found.persons[others], distances, frameid=number)
+    theirs = motmetrics.metrics.create().compute(events, metrics=["idf1", "idp", "idr"]).iloc[0].tolist()
+    score = tracking.evaluate(truth, found).score
+    assert [score.idf1, score.id_precision, score.id_recall] == pytest.approx(theirs)
 
 
 def nearest(

@@ -96,7 +96,6 @@ def _identity_scores(truth: Annotations, found: Annotations, radius: float) -> d
         "id_precision": score.id_precision,
         "id_recall": score.id_recall,
         "switches": score.switches,
-        "fragmentations": score.fragmentations,
         "truth_persons": score.truth_persons,
         "found_persons": score.found_persons,
         "hota": score.hota.hota,
