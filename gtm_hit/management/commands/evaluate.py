@@ -21,7 +21,7 @@ class Command(BaseCommand):
         "Compare detections with ground truth, both text files with one `frame column row` line per person. "
         "A frame that only one of the files has counts as well: its people are all missed, or all extra."
     )
-    # Neither rows nor settings of the site are looked at, so it runs before anything is set up.
+    # Only the two files matter; a site half set up must not keep anybody from comparing them.
     requires_system_checks: list[str] = []
 
     def add_arguments(self, parser: ArgumentParser) -> None:
