@@ -13,7 +13,7 @@ from gtm_hit.models.dataset import Dataset
 
 
 class Release(models.Model):
-    """What was published under a number. The files lie in a folder of the number's own; nothing changes later."""
+    """What was published under a number; its files lie in a folder of their own and never change."""
 
     dataset = models.ForeignKey(Dataset, on_delete=models.PROTECT, related_name="releases")
     number = models.PositiveIntegerField(help_text="from 1")
