@@ -16,7 +16,7 @@ from typing import Any, BinaryIO, Protocol
 import cv2
 import numpy as np
 from django.core.files.base import ContentFile
-from django.core.files.storage import default_storage
+from django.core.files.storage import FileSystemStorage, default_storage
 from numpy.typing import NDArray
 from PIL import Image, ImageFile
 
@@ -31,6 +31,7 @@ MOST_BYTES = 200_000_000
 MOST_PIXELS = 100_000_000
 MOST_PROFILE_BYTES = 8_000  # colour profiles of displays and cameras fit, those of printing presses do not
 
+_PNG_END = b"IEND\xaeB`\x82"
 _ORIENTATION = 0x0112  # Exif's tag
 
 
@@ -87,8 +88,10 @@ def decode(data: bytes) -> Image.Image:
     Raises ImageError when it is truncated or damaged; nothing is guessed to fill a gap.
     """
     image = _opened(io.BytesIO(data))
+    if image.format == "PNG" and _PNG_END not in data:
+        raise ImageError("damaged or truncated: its end is missing")
     try:
-        # Decoding alone skips PNG's checksums and does not miss a lost end.
+        # Decoding alone skips PNG's checksums.
         _opened(io.BytesIO(data)).verify()
         image.load()
     # Pillow's decoders raise a dozen kinds of errors on damaged input, none of them documented.
@@ -119,14 +122,16 @@ def store(data: bytes) -> tuple[str, bool]:
     """The digest the bytes are stored under, and whether they were new. Never seen half-written."""
     digest = digest_of(data)
     name = storage_name(digest)
-    if default_storage.exists(name) and default_storage.size(name) == len(data):
+    there = default_storage.exists(name)
+    if there and default_storage.size(name) == len(data):
         return digest, False
-    try:
-        path = default_storage.path(name)
-    except NotImplementedError:  # an object store, which is atomic by itself
-        default_storage.save(name, ContentFile(data))
-    else:
-        write_bytes(Path(path), data)
+    if isinstance(default_storage, FileSystemStorage):
+        write_bytes(Path(default_storage.path(name)), data)
+        return digest, True
+    # An object store writes atomically by itself, but gives a taken name a suffix.
+    if there:
+        default_storage.delete(name)
+    default_storage.save(name, ContentFile(data))
     return digest, True
 
 
