@@ -79,7 +79,7 @@ def load() -> Tutorial:
     layer = layers.order_by("pk").first() if dataset else None
     if dataset is None or layer is None:
         raise NoTutorial(f"no dataset {settings.TUTORIAL_DATASET!r} with a hidden truth")
-    frames = list(Frame.objects.filter(dataset=dataset).order_by("number")[:FRAMES])
+    frames = shown_frames()
     truth: dict[int, Positions] = {frame.pk: {} for frame in frames}
     rows = Annotation.objects.filter(layer=layer, frame__in=frames)
     for frame_id, person, position in rows.values_list("frame_id", "person", "position"):
@@ -94,6 +94,11 @@ def load() -> Tutorial:
     except NoRoom as error:
         raise NoTutorial(str(error)) from error
     return Tutorial(dataset, frames, exercise)
+
+
+def shown_frames() -> list[Frame]:
+    frames = Frame.objects.filter(dataset__slug=settings.TUTORIAL_DATASET)
+    return list(frames.order_by("number")[:FRAMES])
 
 
 def available() -> bool:

@@ -48,6 +48,7 @@ def join(request: HttpRequest, token: str) -> HttpResponse:
         "external_id": external_id,
         "ask": not external_id,
         "preview": request.GET.get("assignmentId") == PREVIEW,
+        "tutorial": tutorial.available(),
     }
     if context["preview"]:
         return render(request, "work/join.html", context)
