@@ -7,6 +7,8 @@ repeats them; change both or neither.
 
 from __future__ import annotations
 
+import math
+import threading
 from collections.abc import Sequence
 from typing import Any
 
@@ -31,11 +33,14 @@ def corners_rule(camera: Camera, radius: float, height: float, x: Array, y: Arra
     reach, tall = np.float32(radius), float(np.float32(height))
     sides_x, sides_y = (x - reach, x + reach), (y - reach, y + reach)
     with np.errstate(all="ignore"):  # corners in the camera plane come out as NaN and fail every test
+        visible = _in_front(camera, sides_x, sides_y, tall, x, y)
+        if not visible.any():  # whole blocks of ground lie behind a camera
+            boxes[...] = 0
+            return
         u, v = _project_corners(camera, sides_x, sides_y, tall, np.float32)
         # Truncation keeps order, so extremes can be truncated instead of all eight corners.
         xmin, xmax, ymin = np.trunc(u.min(axis=0)), np.trunc(u.max(axis=0)), np.trunc(v.min(axis=0))
         ymax = np.floor(_sum_of_four_lowest(v) * np.float32(0.25))
-        visible = _in_front(camera, sides_x, sides_y, tall, x, y)
         visible &= _acceptable(camera, xmin, ymin, xmax, ymax)
         visible &= xmax - xmin <= camera.width // 3
         _store(boxes, (xmin, ymin, xmax, ymax), visible)
@@ -48,10 +53,13 @@ def centre_rule(camera: Camera, radius: float, height: float, x: Array, y: Array
     """
     sides_x, sides_y = (x - radius, x + radius), (y - radius, y + radius)
     with np.errstate(all="ignore"):
+        visible = _in_front(camera, sides_x, sides_y, height, x, y)
+        if not visible.any():
+            boxes[...] = 0
+            return
         u, v = _project_corners(camera, sides_x, sides_y, height, np.float64)
         xmin, xmax, ymin = u.min(axis=0), u.max(axis=0), v.min(axis=0)
         ymax = _project_axis(camera, x, y, 0.0)
-        visible = _in_front(camera, sides_x, sides_y, height, x, y)
         visible &= _acceptable(camera, xmin, ymin, xmax, ymax)
         visible &= (xmax - xmin <= camera.width / 3) & (ymax - ymin <= camera.height / 3)
         _store(boxes, [np.trunc(side) for side in (xmin, ymin, xmax, ymax)], visible)
@@ -62,11 +70,11 @@ def _project_corners(
 ) -> tuple[Array, Array]:
     """u and v, (8, ...): the four feet corners, then the four heads."""
     shape = np.broadcast_shapes(sides_x[0].shape, sides_y[0].shape)
-    u, v = np.empty((8, *shape), precision), np.empty((8, *shape), precision)
+    u, v = _scratch.take("u", precision, (8, *shape)), _scratch.take("v", precision, (8, *shape))
     terms = _Terms(camera)
     columns, rows = [terms.along_x(x) for x in sides_x], [terms.along_y(y) for y in sides_y]
     rise = terms.along_z(height)
-    here, spare = np.empty((3, *shape)), np.empty(shape)
+    here, spare = _scratch.take("here", np.float64, (3, *shape)), _scratch.take("spare", np.float64, shape)
     for corner in range(4):
         for axis in range(3):
             np.add(columns[corner % 2][axis], rows[corner // 2][axis], out=here[axis])
@@ -75,6 +83,26 @@ def _project_corners(
             here[axis] += rise[axis]
         terms.to_pixels(here, spare, u[corner + 4], v[corner + 4])
     return u, v
+
+
+class _Scratch(threading.local):
+    """The large arrays of a block, kept for the thread's next one.
+
+    Asking the system for fresh pages block by block takes longer than the rule itself.
+    """
+
+    def __init__(self) -> None:
+        self.arrays: dict[tuple[str, type], Array] = {}
+
+    def take(self, name: str, precision: type, shape: tuple[int, ...]) -> Array:
+        size = math.prod(shape)
+        array = self.arrays.get((name, precision))
+        if array is None or array.size < size:
+            array = self.arrays[name, precision] = np.empty(size, precision)
+        return array[:size].reshape(shape)
+
+
+_scratch = _Scratch()
 
 
 class _Terms:
@@ -119,10 +147,14 @@ class _Terms:
 def _project_axis(camera: Camera, x: Array, y: Array, z: float) -> Array:
     """v of the cylinder's axis at height `z`."""
     terms = _Terms(camera)
-    parts = zip(terms.along_x(x), terms.along_y(y), terms.along_z(z), strict=True)
-    here = np.stack([along_x + along_y + along_z for along_x, along_y, along_z in parts])
-    u, v = np.empty(here.shape[1:]), np.empty(here.shape[1:])
-    terms.to_pixels(here, np.empty(here.shape[1:]), u, v)
+    columns, rows, rise = terms.along_x(x), terms.along_y(y), terms.along_z(z)
+    shape = np.broadcast_shapes(x.shape, y.shape)
+    here, spare = _scratch.take("here", np.float64, (3, *shape)), _scratch.take("spare", np.float64, shape)
+    u, v = np.empty(shape), np.empty(shape)
+    for axis in range(3):
+        np.add(columns[axis], rows[axis], out=here[axis])
+        here[axis] += rise[axis]
+    terms.to_pixels(here, spare, u, v)
     return v
 
 
