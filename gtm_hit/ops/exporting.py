@@ -59,7 +59,6 @@ def run(mine: jobs.Run) -> dict[str, Any]:
     layer = Layer.objects.select_related("dataset").filter(pk=mine.job.parameters["layer_id"]).first()
     if layer is None:
         raise ExportError("The layer is no longer there.")
-    remove_dead_partials()
     folder = settings.EXPORTS_ROOT / f"{layer.dataset.slug}-{layer.name}-{mine.job.pk}"
     partial = folder.with_name(f"{folder.name}.partial-{mine.job.pk}-{mine.attempt}")
 
