@@ -1,0 +1,38 @@
+"""Make the demo scene; on a second run it is there already."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django.core.management.base import BaseCommand, CommandError, CommandParser
+
+from gtm_hit.demo.scene import SceneError
+from gtm_hit.management.progress import ProgressLine
+from gtm_hit.ops.demo import DemoError, make_demo
+from gtm_hit.ops.importing.dataset import ImportFailed
+
+
+class Command(BaseCommand):
+    help = (
+        "Render the demo scene (seven views of a plaza with people), import it with its truth in a hidden "
+        "layer, and cut it into batches."
+    )
+
+    def add_arguments(self, parser: CommandParser) -> None:
+        parser.add_argument("--slug", default="demo", help="the dataset's name in addresses (default: demo)")
+        parser.add_argument("--frames", type=int, default=None, help="annotated frames (default: 20)")
+        parser.add_argument("--seed", type=int, default=None, help="another seed gives other people")
+
+    def handle(self, *args: Any, slug: str, frames: int | None, seed: int | None, **options: Any) -> None:
+        progress = ProgressLine(self.stdout)
+        try:
+            demo = make_demo(slug, frames, seed, progress)
+        except (DemoError, SceneError, ImportFailed) as error:
+            progress.finish()
+            raise CommandError(str(error)) from error
+        progress.finish()
+        state = "made" if demo.frames_added else "was there already"
+        self.stdout.write(
+            f"Demo scene {slug} {state}: {demo.dataset.frames.count()} frames, "
+            f"{demo.dataset.batches.count()} batches."
+        )
