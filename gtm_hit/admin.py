@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from django.contrib import admin
+from django.db.models import QuerySet
 from django.http import HttpRequest
 
 from gtm_hit.models import (
     Annotation,
+    ApiToken,
     Assignment,
     Batch,
     Camera,
@@ -18,6 +20,7 @@ from gtm_hit.models import (
     Job,
     Layer,
     LayerFrame,
+    Release,
     Save,
     Worker,
 )
@@ -181,3 +184,27 @@ class JobAdmin(LookOnlyAdmin):
     list_select_related = ["dataset", "created_by"]
     search_fields = ["=id", "dataset__slug", "message"]
     date_hierarchy = "created_at"
+
+
+@admin.register(Release)
+class ReleaseAdmin(LookOnlyAdmin):
+    list_display = ["number", "title", "dataset", "layer", "manifest_digest", "created_by", "created_at"]
+    list_filter = ["dataset"]
+    list_select_related = ["dataset", "layer", "created_by"]
+    search_fields = ["=number", "title", "dataset__slug", "layer__name", "=manifest_digest"]
+    exclude = ["manifest"]
+
+    def get_queryset(self, request: HttpRequest) -> QuerySet[Release]:
+        return super().get_queryset(request).defer("manifest")  # thousands of digests
+
+
+@admin.register(ApiToken)
+class ApiTokenAdmin(admin.ModelAdmin):
+    list_display = ["name", "user", "scopes", "created_at", "expires_at", "last_used_at", "revoked_at"]
+    list_filter = [("revoked_at", admin.EmptyFieldListFilter)]
+    list_select_related = ["user"]
+    search_fields = ["name", "user__username"]
+    readonly_fields = ["user", "scopes", "created_at", "last_used_at"]
+
+    def has_add_permission(self, request: HttpRequest) -> bool:
+        return False  # a key is shown once, by the page that makes it

@@ -13,7 +13,7 @@ from gtm_hit.models import Dataset
 from gtm_hit.ops.coverage import Coverage, shade
 
 SHAPE = 1.9  # width by height of the place on the page
-FARTHEST = 0.45  # of the grid's longer side; a camera farther away is drawn at this distance
+FARTHEST = 0.8  # of the grid's longer side; a camera farther away is drawn at this distance
 
 
 @dataclass(frozen=True)
