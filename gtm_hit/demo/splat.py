@@ -1,0 +1,158 @@
+"""Draws lofted parts: every surface is sampled finer than the pixels, and the nearest sample wins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from gtm_hit.demo.arrays import Flags, Floats, Indices
+from gtm_hit.demo.loft import Part
+from gtm_hit.geometry.camera import Camera
+
+DENSITY = 1.12  # samples per pixel side; less than 1 leaves holes
+NEAR = 0.6  # metres; what comes closer to a camera is not drawn
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Parts in the world with the light that falls on their points."""
+
+    parts: tuple[Part, ...]
+    vertices: Floats  # (N, 3) metres, the parts' points one after the other
+    normals: Floats  # (N, 3)
+    light: Floats  # (N, 3)
+
+
+@dataclass(frozen=True)
+class Sprite:
+    """A picture of one object in one view, to be laid over what is behind it."""
+
+    left: int  # pixel of the view the sprite starts in
+    top: int
+    colour: Floats  # (h, w, 3) linear light times cover
+    cover: Floats  # (h, w) 0…1
+    depth: float  # metres along the optical axis
+
+
+def draw(camera: Camera, mesh: Mesh) -> Sprite | None:
+    """The mesh as the camera sees it; None when it is outside the image or too close."""
+    seen = mesh.vertices @ camera.rotation.T + camera.tvec
+    depth = seen[:, 2]
+    if depth.min() < NEAR:
+        return None
+    u = camera.matrix[0, 0] * seen[:, 0] / depth + camera.matrix[0, 2]
+    v = camera.matrix[1, 1] * seen[:, 1] / depth + camera.matrix[1, 2]
+    left, right = max(int(np.floor(u.min())) - 1, 0), min(int(np.ceil(u.max())) + 2, camera.width)
+    top, bottom = max(int(np.floor(v.min())) - 1, 0), min(int(np.ceil(v.max())) + 2, camera.height)
+    if left >= right or top >= bottom:
+        return None
+    fine = _fineness(float(v.max() - v.min()))
+    shape = (round((bottom - top) * fine), round((right - left) * fine))
+    towards = np.sum((camera.centre - mesh.vertices) * mesh.normals, axis=1)
+    placed = np.column_stack(((u + 0.5 - left) * fine, (v + 0.5 - top) * fine, depth, towards))
+    image, hit = rasterise(mesh, placed.astype(np.float32), shape)
+    size = (right - left, bottom - top)
+    cover = _shrunk(hit.astype(np.float32), size)
+    colour = _shrunk(image, size)
+    return Sprite(left, top, colour, cover, float(depth.mean()))
+
+
+def rasterise(mesh: Mesh, placed: Floats, shape: tuple[int, int]) -> tuple[Floats, Flags]:
+    """Colours (h, w, 3) and which pixels are hit.
+
+    `placed` is (N, 4): x and y in pixels, depth, how much the surface faces the viewer; backs are left out.
+    """
+    samples = [_samples(part, rows, light) for part, rows, light in _by_part(mesh, placed, shape)]
+    if not samples:
+        return np.zeros((*shape, 3), np.float32), np.zeros(shape, np.bool_)
+    colour = np.concatenate([colour for _, colour in samples])
+    place = np.concatenate([place for place, _ in samples])
+    winner = nearest_samples(place, shape)
+    hit = winner >= 0
+    image = np.zeros((*shape, 3), dtype=np.float32)
+    image[hit] = colour[winner[hit]]
+    return image, hit
+
+
+def nearest_samples(place: Floats, shape: tuple[int, int]) -> Indices:
+    """Which sample is the nearest in every pixel (h, w), -1 where there is none, of (N, 4) as in `rasterise`.
+
+    A sample covers the 2 by 2 pixels around it, so that samples a pixel apart leave no holes.
+    """
+    height, width = shape
+    column, row = (place[:, axis] - np.float32(0.5) for axis in (0, 1))
+    within = (column >= 0) & (column < width - 1) & (row >= 0) & (row < height - 1)
+    inside = np.flatnonzero(within & (place[:, 3] > 0))
+    winner = np.full(height * width, -1, dtype=np.int32)
+    if len(inside):
+        inside = inside[far_to_near(place[inside, 2])].astype(np.int32)
+        pixel = row[inside].astype(np.int32) * width + column[inside].astype(np.int32)
+        # Of several samples in one pixel the last written, the nearest, stays.
+        corners = pixel[:, None] + np.array([0, 1, width, width + 1], dtype=np.int32)
+        winner[corners.ravel()] = np.repeat(inside, 4)
+    return winner.reshape(shape)
+
+
+def far_to_near(depth: Floats) -> Indices:
+    """Order of depths. 16 bits make it a radix sort, which is ten times as fast."""
+    nearest, farthest = float(depth.min()), float(depth.max())
+    steps = (farthest - depth) * np.float32(65535 / max(farthest - nearest, 1e-6))
+    return np.argsort(steps.astype(np.uint16), kind="stable")
+
+
+def sample_parts(mesh: Mesh, placed: Floats, shape: tuple[int, int]) -> Floats:
+    """Only the places (N, 4) of the samples that `rasterise` would draw."""
+    return np.concatenate(
+        [_spread(rows, *_density(rows)).reshape(-1, 4) for _, rows, _ in _by_part(mesh, placed, shape)]
+    )
+
+
+def _by_part(mesh: Mesh, placed: Floats, shape: tuple[int, int]) -> list[tuple[Part, Floats, Floats]]:
+    """The parts that come into a picture of this shape, with their points' places and light."""
+    found, start = [], 0
+    for part in mesh.parts:
+        rings, columns = part.points.shape[:2]
+        stop = start + rings * columns
+        place, light = placed[start:stop], mesh.light[start:stop]
+        outside = (place[:, :2].max(axis=0) < 0) | (place[:, :2].min(axis=0) > shape[::-1])
+        if not outside.any():
+            found.append((part, place.reshape(rings, columns, 4), light.reshape(rings, columns, 3)))
+        start = stop
+    return found
+
+
+def _samples(part: Part, placed: Floats, light: Floats) -> tuple[Floats, Floats]:
+    rings, columns = _density(placed)
+    colour = _spread(part.colours, rings * ((len(part.colours) - 1) / (len(placed) - 1)), columns)
+    colour *= _spread(light, rings, columns)
+    return _spread(placed, rings, columns).reshape(-1, 4), colour.reshape(-1, 3)
+
+
+def _density(placed: Floats) -> tuple[Floats, int]:
+    """Between which rings (n,) to sample, evenly along the surface in pixels, and how many times around."""
+    flat = placed[..., :2]
+    along = np.linalg.norm(np.diff(flat, axis=0), axis=2).max(axis=1).cumsum()
+    sectors = np.linalg.norm(np.diff(flat, axis=1), axis=2)
+    around = max(sectors.sum(axis=1).max(), 0.62 * sectors.max() * sectors.shape[1])
+    stops = np.linspace(0, along[-1], max(int(along[-1] * DENSITY), 2) + 1)
+    rings = np.interp(stops, np.concatenate(([0], along)), np.arange(len(placed)))
+    return rings.astype(np.float32), max(int(around * DENSITY), 3)
+
+
+def _spread(values: Floats, rings: Floats, columns: int) -> Floats:
+    """Values (n, columns, k) between the given rows of (R, S, k), stretched to so many columns."""
+    lower = np.minimum(rings.astype(np.intp), len(values) - 2)
+    share = (rings - lower)[:, None, None]
+    rows = values[lower] * (1 - share) + values[lower + 1] * share
+    return cv2.resize(rows, (columns, len(rings)), interpolation=cv2.INTER_LINEAR)
+
+
+def _shrunk(values: Floats, size: tuple[int, int]) -> Floats:
+    return np.asarray(cv2.resize(values, size, interpolation=cv2.INTER_AREA), np.float32)
+
+
+def _fineness(height: float) -> float:
+    """Into how many samples a pixel is divided along each side."""
+    return 3.0 if height < 110 else 2.0 if height < 320 else 1.5
