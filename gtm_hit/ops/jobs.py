@@ -91,7 +91,7 @@ class Run:
 Operation = Callable[[Run], dict[str, Any]]
 
 
-def create(kind: str, dataset: Dataset, parameters: dict[str, Any], user: User | None = None) -> Job:
+def create(kind: str, dataset: Dataset | None, parameters: dict[str, Any], user: User | None = None) -> Job:
     """Queue a job; the message goes out when the surrounding transaction is committed."""
     job = Job.objects.create(
         dataset=dataset, kind=kind, parameters=parameters, created_by=user, heartbeat_at=timezone.now()
@@ -100,10 +100,13 @@ def create(kind: str, dataset: Dataset, parameters: dict[str, Any], user: User |
     return job
 
 
-def create_once(kind: str, dataset: Dataset, parameters: dict[str, Any], user: User | None = None) -> Job:
+def create_once(
+    kind: str, dataset: Dataset | None, parameters: dict[str, Any], user: User | None = None
+) -> Job:
     """Like `create`, but a second press on the button finds the job that is still under way."""
     with transaction.atomic():
-        Dataset.objects.select_for_update().get(pk=dataset.pk)
+        if dataset:
+            Dataset.objects.select_for_update().get(pk=dataset.pk)
         under_way = Job.objects.filter(
             dataset=dataset,
             kind=kind,
@@ -138,14 +141,14 @@ def run(job_id: int, operations: dict[str, Operation]) -> None:
     if mine is None:
         return
     try:
-        _run_to_its_end(mine, operations[mine.job.kind])
+        _run_to_its_end(mine, operations)
     except JobLost as error:
         logger.warning("%s", error)
 
 
-def _run_to_its_end(mine: Run, operation: Operation) -> None:
+def _run_to_its_end(mine: Run, operations: dict[str, Operation]) -> None:
     try:
-        result = operation(mine)
+        result = operations[mine.job.kind](mine)
     except JobCancelled:
         mine.cancelled()
     except JobLost:

@@ -235,3 +235,10 @@ def test_trying_again_keeps_the_failed_job_and_its_reason(dataset: Dataset) -> N
     assert again.pk != run.job.pk
     assert (again.kind, again.state, again.created_by) == (KIND, Job.State.QUEUED, user)
     assert Job.objects.get(pk=run.job.pk).message == "disk full"
+
+
+def test_a_kind_of_work_this_server_does_not_know_fails_at_once() -> None:
+    job = jobs.create(Job.Kind.MAKE_RELEASE, None, {})
+    jobs.run(job.pk, {})
+    job.refresh_from_db()
+    assert job.state == Job.State.FAILED

@@ -332,3 +332,8 @@ def test_layers_of_workers_come_last(staff: Client, dataset: Dataset) -> None:
 @pytest.mark.parametrize("name", ["403.html", "404.html", "500.html", "403_csrf.html"])
 def test_error_pages_need_no_context(name: str) -> None:
     assert 'href="/"' in render_to_string(name)
+
+
+def test_a_job_without_a_dataset_has_a_page_too(staff: Client, db: None) -> None:
+    job = jobs.create(Job.Kind.IMPORT_DATASET, None, {})
+    assert "Import of a dataset" in text(staff.get(f"/jobs/{job.pk}/"))
