@@ -8,11 +8,10 @@ const THEME_KEY = "gtm-theme"; // shared with the ordinary pages
 
 /** The line on top: where one is, what is left, how it is saved, and a button for everything. */
 export class Bar {
-  constructor({ scene, store, saver, panes, perform, jump, home, signIn }) {
-    Object.assign(this, { scene, store, saver, panes });
+  constructor({ scene, store, saver, panes, walk, perform, home, signIn }) {
+    Object.assign(this, { scene, store, saver, panes, walk });
     this._keys = new Map(keyTable().map(({ id, keys, label }) => [id, { keys, label }]));
     this._perform = perform;
-    this._jump = jump;
     this.element = this._build(home, signIn);
     store.on("change", () => this._later());
     store.on("frame", () => this._later());
@@ -130,7 +129,7 @@ export class Bar {
         "aria-label": gettext("Frame {place}, {state}", { place, state }),
         title: gettext("Frame {place}, {state}", { place, state }),
         onclick: (event) => {
-          this._jump(number);
+          this.walk.jump(number);
           if (event.detail > 0) event.currentTarget.blur();
         },
       },

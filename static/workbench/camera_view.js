@@ -1,6 +1,6 @@
 import { screenAxes } from "../geometry/directions.js";
 import { gridLines, gridOutline } from "../geometry/ground.js";
-import { CYAN, lookOf } from "./looks.js";
+import { CYAN } from "./looks.js";
 import { boxBounds, drawBox, drawFoot, drawPath } from "./marks.js";
 
 const FULL_FROM = 1.15; // screen pixels per light pixel from which full resolution is worth its bytes
@@ -83,17 +83,7 @@ export class CameraView {
     }
   }
 
-  /** One drawable item per visible person, far ones first. */
-  items(transform, { people, selection, options }) {
-    const items = [];
-    for (const annotation of people.values()) {
-      const box = this.box(annotation);
-      if (!box) continue;
-      items.push(this.item(annotation, lookOf(annotation, annotation.person === selection), transform, options));
-    }
-    return items.sort((one, other) => one.order - other.order);
-  }
-
+  /** What to draw for one visible person. */
   item(annotation, look, transform, options) {
     const box = paneBox(this.box(annotation), transform);
     const label = options.labels && annotation.person !== null ? String(annotation.person) : "";

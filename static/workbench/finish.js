@@ -13,7 +13,7 @@ export function summary(store) {
 }
 
 /** The summary after the last frame; submits, or jumps to a frame. */
-export async function finishAssignment({ store, saver, api, home, jump, notices }) {
+export async function finishAssignment({ store, saver, api, walk, notices, home }) {
   const saved = await saver.flush();
   const rows = summary(store);
   const unfinished = rows.filter(({ done }) => !done);
@@ -28,19 +28,19 @@ export async function finishAssignment({ store, saver, api, home, jump, notices 
       { id: "stay", label: gettext("Back to annotating") },
     ],
   });
-  if (answer === "first") return jump(unfinished[0].number);
-  if (answer?.startsWith("frame ")) return jump(Number(answer.slice(6)));
-  if (answer === "submit") return submit({ api, home, jump, notices });
+  if (answer === "first") return walk.open(unfinished[0].number);
+  if (answer?.startsWith("frame ")) return walk.open(Number(answer.slice(6)));
+  if (answer === "submit") return submit({ api, walk, notices, home });
 }
 
-async function submit({ api, home, jump, notices }) {
+async function submit({ api, walk, notices, home }) {
   try {
     await api.submit();
     window.location.assign(home);
   } catch (error) {
     const frames = error instanceof ApiError && error.code === "unfinished" ? error.details.frames : [];
     notices.say(gettext("Not submitted: {reason}", { reason: error.message }));
-    if (frames.length) return jump(frames[0]);
+    if (frames.length) return walk.open(frames[0]);
   }
 }
 

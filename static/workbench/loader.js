@@ -5,27 +5,34 @@
 const PIECE = 20;
 
 export class Loader {
-  constructor({ api, scene, saver, store }) {
-    Object.assign(this, { _api: api, _scene: scene, _saver: saver, _store: store });
+  constructor({ api, scene, store }) {
+    Object.assign(this, { _api: api, _scene: scene, _store: store, _saver: null });
   }
 
-  /** Everything needed to start at `number`. */
+  /** The states needed to start at `number`; can be asked for before there is a saver. */
   async start(number) {
-    if (this._scene.mode !== "layer") this._install((await this._api.frames()).frames);
-    else await this.load(number, false);
+    return (await this._api.frames(this._scene.mode === "layer" ? this._around(number) : "")).frames;
+  }
+
+  connect(saver, states) {
+    this._saver = saver;
+    this._install(states);
   }
 
   /** Make sure a frame is there; `again`: take the server's newest state even so. */
   async load(number, again) {
-    if (again) return this._saver.install(await this._api.frame(number));
-    if (this._store.frame(number).loaded) return;
-    const index = this._store.numbers.indexOf(number);
-    const from = this._store.numbers[Math.max(0, index - 2)];
-    this._install((await this._api.frames(`?from=${from}&count=${PIECE}`)).frames);
+    if (again) this._saver.install(await this._api.frame(number));
+    else if (!this._store.frame(number).loaded) this._install((await this._api.frames(this._around(number))).frames);
   }
 
-  _install(frames) {
-    for (const state of frames) {
+  /** A little before the frame too: it is where one goes back to, and where people are carried over from. */
+  _around(number) {
+    const { numbers } = this._store;
+    return `?from=${numbers[Math.max(0, numbers.indexOf(number) - 2)]}&count=${PIECE}`;
+  }
+
+  _install(states) {
+    for (const state of states) {
       if (!this._store.frame(state.number).loaded) this._saver.install(state);
     }
   }

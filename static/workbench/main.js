@@ -1,6 +1,7 @@
 import { element } from "./dom.js";
 import { gettext, useCatalog } from "./messages.js";
-import { startWorkbench } from "./workbench.js";
+import { openSession } from "./session.js";
+import { buildWorkbench } from "./workbench.js";
 
 const { api, token, mode, home } = document.body.dataset;
 const root = document.getElementById("workbench");
@@ -9,7 +10,7 @@ const catalog = document.getElementById("catalog");
 if (catalog) useCatalog(JSON.parse(catalog.textContent));
 
 try {
-  await startWorkbench(root, { api, token, mode, home, csrf });
+  buildWorkbench(root, await openSession({ api, token, mode, csrf }), { mode, home });
   root.dataset.ready = "true";
 } catch (error) {
   console.error(error);

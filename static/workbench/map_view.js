@@ -1,5 +1,4 @@
 import { footprint } from "../geometry/ground.js";
-import { lookOf } from "./looks.js";
 import { drawFoot, drawLabel, drawPath, labelWidth } from "./marks.js";
 
 const BORDER = 0.8; // metres around the grid
@@ -82,12 +81,6 @@ export class MapView {
   }
 
   paintGuides() {}
-
-  items(transform, { people, selection, options }) {
-    return [...people.values()]
-      .map((one) => this.item(one, lookOf(one, one.person === selection), transform, options))
-      .sort((one, other) => one.order - other.order);
-  }
 
   item(annotation, look, transform, options) {
     const foot = this.foot(annotation);

@@ -1,4 +1,5 @@
 import { element, setText } from "./dom.js";
+import { lookOf } from "./looks.js";
 import { gettext } from "./messages.js";
 import { damage, overlaps } from "./regions.js";
 import { clamped, fit } from "./transform.js";
@@ -14,6 +15,7 @@ export class Pane {
     this._model = model;
     this._scheduler = scheduler;
     this._items = [];
+    this._known = new Map(); // person → item, as long as neither the person nor the way of drawing changes
     this._dirty = { picture: true, marks: true };
     this._ratio = 1;
     this.room = { width: 0, height: 0 };
@@ -132,7 +134,8 @@ export class Pane {
   }
 
   _paintMarks(all) {
-    const items = [...this.view.items(this.transform, this._model), ...this._model.extras(this)];
+    if (all) this._known.clear();
+    const items = [...this._peopleItems(), ...this._model.extras(this)];
     const whole = { xmin: 0, ymin: 0, xmax: this.room.width, ymax: this.room.height };
     const dirty = all ? whole : damage(this._items, items);
     this._items = items;
@@ -147,6 +150,21 @@ export class Pane {
     ctx.clearRect(left, top, width, height);
     for (const item of items) if (overlaps(item.bounds, dirty)) item.draw(ctx);
     ctx.restore();
+  }
+
+  /** One item per visible person, far ones first, the selected one last. */
+  _peopleItems() {
+    const { people, selection, options } = this._model;
+    const known = new Map();
+    for (const annotation of people.values()) {
+      if (!this.view.box(annotation)) continue;
+      const look = lookOf(annotation, annotation.person === selection);
+      const old = this._known.get(annotation.person);
+      const fresh = old?.what !== annotation || old.look !== look.name;
+      known.set(annotation.person, fresh ? this.view.item(annotation, look, this.transform, options) : old);
+    }
+    this._known = known;
+    return [...known.values()].sort((one, other) => one.order - other.order);
   }
 
   _context(canvas) {

@@ -9,10 +9,9 @@ import { gettext, ngettext } from "./messages.js";
  * the people of the nearest earlier one, yellow.
  */
 export class Walk {
-  constructor({ scene, store, history, saver, images, notices, finish, load }) {
-    Object.assign(this, { scene, store, history, saver, images, notices });
+  constructor({ scene, store, history, saver, images, loader, notices, finish }) {
+    Object.assign(this, { scene, store, history, saver, images, loader, notices });
     this._finish = finish;
-    this._load = load;
     this._busy = false;
     store.on("frame", () => this._prefetch());
     this._prefetch();
@@ -26,7 +25,7 @@ export class Walk {
     return this._alone(async () => {
       if (this.judging && !(await this._leaveForward())) return;
       const next = this.store.neighbour(1);
-      if (next !== undefined) await this._open(next);
+      if (next !== undefined) await this.open(next);
       else if (this.scene.mode === "assignment") await this._finish();
       else this.notices.say(gettext("This is the last frame"));
     });
@@ -36,12 +35,12 @@ export class Walk {
     return this._alone(async () => {
       const previous = this.store.neighbour(-1);
       if (previous === undefined) return this.notices.say(gettext("This is the first frame"));
-      await this._open(previous);
+      await this.open(previous);
     });
   }
 
   jump(number) {
-    return this._alone(() => this._open(number));
+    return this._alone(() => this.open(number));
   }
 
   /** Take the server's newest state of this frame; edits not yet saved are saved first. */
@@ -49,26 +48,27 @@ export class Walk {
     return this._alone(async () => {
       const number = this.store.current;
       if (!(await this.saver.flush())) return this.notices.say(gettext("Not loaded: there are edits still to be saved"));
-      await this._load(number, true);
+      await this.loader.load(number, true);
       this.notices.say(gettext("Frame loaded from the server"));
     });
   }
 
-  /** People for a frame that was never saved and has nobody yet. */
+  /** People for a frame of a batch that was never saved and has nobody yet. */
   carryInto(number) {
     const { people, nobody } = this.store.frame(number);
-    if (this.saver.readOnly !== null || people.size || nobody || this.saver.revision(number) > 0) return;
+    if (!this.judging || people.size || nobody || this.saver.revision(number) > 0) return;
     const earlier = this.store.numbers.slice(0, this.store.numbers.indexOf(number)).reverse();
     const from = earlier.find((one) => this.store.frame(one).loaded && this.store.people(one).size);
     if (from === undefined) return;
     this.history.run(commands.bring(this.store, number, copyPeople(this.store.people(from))));
   }
 
-  async _open(number) {
-    await this._load(number, false);
+  /** Show a frame; whoever calls it has asked what has to be asked. */
+  async open(number) {
+    await this.loader.load(number, false);
     const selected = this.store.selection;
     this.store.open(number);
-    if (this.scene.mode !== "tutorial") this.carryInto(number);
+    this.carryInto(number);
     if (this.store.selection === null && selected !== null) this.store.select(selected);
   }
 

@@ -14,6 +14,8 @@ from gtm_hit.models import Annotation, Assignment
 from tests.browser import street as streets
 from tests.browser.street import GRID, Street, workbench_path
 
+TWO_FRAMES = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+
 
 class Bench:
     """What a test needs to see and do; everything goes through the page as an annotator has it."""
@@ -48,10 +50,16 @@ class Bench:
     def pane(self, view: int) -> Locator:
         return pane_of(self.page, view)
 
+    def painted(self) -> None:
+        """Wait until what was done has reached the screen."""
+        self.page.evaluate(TWO_FRAMES)
+
     def rows(self) -> list[str]:
+        self.painted()
         return self.page.locator(".people li .number").all_inner_texts()
 
     def selected(self) -> str | None:
+        self.painted()
         chosen = self.page.locator('.people li[aria-selected="true"] .number')
         return chosen.inner_text() if chosen.count() else None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import uuid
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import cv2
@@ -25,8 +25,10 @@ FRAME_STEP = 5
 
 
 @cache
-def cameras() -> list[CalibratedCamera]:
-    return load_cameras(REPOSITORY / "fixtures" / "wildtrack_cameras.json")
+def cameras(views: int = 7) -> list[CalibratedCamera]:
+    """The seven cameras; more views than that see the same again."""
+    seven = load_cameras(REPOSITORY / "fixtures" / "wildtrack_cameras.json")
+    return [replace(seven[index % 7], index=index, name=f"C{index + 1}") for index in range(views)]
 
 
 @cache
@@ -42,7 +44,7 @@ def walks(people: int, frames: int) -> NDArray[np.int64]:
 @cache
 def picture(camera_index: int, positions: tuple[int, ...]) -> tuple[str, str]:
     """Digests of the light and the full picture in the store."""
-    camera = cameras()[camera_index]
+    camera = cameras(camera_index + 1)[camera_index]
     pixels = painted(camera, np.array(positions, dtype=np.int64))
     full = cv2.imencode(".jpg", pixels, [cv2.IMWRITE_JPEG_QUALITY, 85])[1].tobytes()
     light = cv2.imencode(".jpg", cv2.resize(pixels, None, fx=0.5, fy=0.5))[1].tobytes()
@@ -86,10 +88,12 @@ def workbench_path(assignment: Assignment) -> str:
     return f"/annotate/{tokens.assignment_token(assignment)}/"
 
 
-def make_street(people: int = 6, frames: int = 3, size: int = 10, slug: str = "street") -> Street:
+def make_street(
+    people: int = 6, frames: int = 3, size: int = 10, slug: str = "street", views: int = 7
+) -> Street:
     """The dataset with its batches; pictures are made once per process and stored by content."""
     dataset = Dataset.objects.create(slug=slug, name=slug.title())
-    for camera in cameras():
+    for camera in cameras(views):
         Camera.objects.create(
             dataset=dataset,
             index=camera.index,

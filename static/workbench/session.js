@@ -1,0 +1,57 @@
+import { Activity } from "./activity.js";
+import { Api } from "./api.js";
+import { History } from "./history.js";
+import { Images } from "./images.js";
+import { Journal } from "./journal.js";
+import { Loader } from "./loader.js";
+import { Saver } from "./saver.js";
+import { Scene } from "./scene.js";
+import { Store } from "./store.js";
+
+/**
+ * Everything behind the page: what is annotated, how it is kept, and the pictures. Knows no page.
+ * @typedef {{api: Api, scene: Scene, store: Store, history: History, saver: Saver, loader: Loader,
+ *            images: Images, activity: Activity}} Session
+ */
+
+/** @param {{api: string, token: string, mode: string, csrf: string}} settings @returns {Promise<Session>} */
+export async function openSession(settings) {
+  const api = new Api({ base: settings.api, token: settings.token, mode: settings.mode, csrf: settings.csrf });
+  const scene = new Scene(await api.scene());
+  const first = firstUnfinished(scene);
+  const images = new Images(api, scene.frames);
+  images.want([first]); // pictures take longest, so they are on their way before anything else is asked for
+  const store = new Store(scene.frames.map(({ number }) => number), scene.nextPerson);
+  const loader = new Loader({ api, scene, store });
+  const [states, journal] = await Promise.all([loader.start(first), Journal.open(layerKey(scene))]);
+  const activity = new Activity();
+  const saver = new Saver({ api, store, journal, activity, practice: scene.mode === "tutorial" });
+  const history = new History(store);
+  loader.connect(saver, states);
+  if (!scene.editable) saver.makeReadOnly(scene.readOnlyReason);
+  await recover(journal, saver, loader, history);
+  store.open(first);
+  return { api, scene, store, history, saver, loader, images, activity };
+}
+
+/** Continue where one was. */
+function firstUnfinished({ frames }) {
+  return (frames.find(({ done }) => !done) ?? frames[0]).number;
+}
+
+/** Under which name edits are kept; the tutorial keeps none. */
+function layerKey({ mode, layer }) {
+  return mode === "tutorial" ? null : `${mode} ${layer.id}`;
+}
+
+/** Edits the server never acknowledged, and the undo steps, as they were before a reload. */
+async function recover(journal, saver, loader, history) {
+  for (const record of await journal.recover()) {
+    await loader.load(record.frame, false);
+    saver.adopt(record);
+    await journal.drop(record);
+  }
+  const stored = await journal.readHistory();
+  if (stored) history.restore(stored);
+  history.on("change", () => journal.writeHistory(() => history.dump()));
+}
