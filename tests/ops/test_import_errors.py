@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import zlib
 from collections.abc import Callable
@@ -11,6 +12,7 @@ import pytest
 from django.apps import apps
 from django.core.files.storage import default_storage
 
+from gtm_hit.models import Dataset, Frame
 from gtm_hit.ops.importing.dataset import ImportFailed, import_dataset
 from tests.dataset_folder import GRID, add_calibrations, make_folder, options, picture
 
@@ -209,6 +211,16 @@ def test_boxes_of_too_few_cameras_are_told(folder: Path) -> None:
     assert problem.startswith("annotations_positions/00000000.json: entry 0")
 
 
+def test_more_people_than_fit_in_a_frame_are_told(folder: Path) -> None:
+    def crowd(people: list[dict]) -> None:
+        people[:] = [{**people[0], "personID": person} for person in range(501)]
+
+    edit_json(folder, crowd)
+    assert problems_of(folder) == [
+        "annotations_positions/00000000.json: 501 people; at most 500 fit in a frame"
+    ]
+
+
 # Options
 
 
@@ -272,3 +284,38 @@ def test_a_broken_image_at_the_end_leaves_no_derivatives_behind(folder: Path) ->
     path = folder / "Image_subsets/C3/00000005.png"
     path.write_bytes(path.read_bytes()[:-2000])
     assert len(problems_of(folder)) == 1
+
+
+# Interrupted
+
+
+def test_an_interrupted_import_leaves_nothing(folder: Path) -> None:
+    def interrupt(phase: str, done: int, total: int) -> None:
+        if phase == "making images" and done == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        import_dataset(options(folder), interrupt)
+    assert not Dataset.objects.exists()
+    assert stored_files() == []
+
+
+def test_of_two_imports_at_once_the_second_is_told_to_run_again(folder: Path) -> None:
+    def somebody_else_was_faster(phase: str, done: int, total: int) -> None:
+        if phase == "writing to the database" and done == 0:
+            Dataset.objects.create(slug="square", name="Theirs")
+
+    with pytest.raises(ImportFailed, match="square: was changed by another import in the meantime"):
+        import_dataset(options(folder), somebody_else_was_faster)
+    assert Dataset.objects.get().name == "Theirs"
+    assert not Frame.objects.exists()
+    assert stored_files() == []
+
+
+def test_a_full_disk_is_told_and_leaves_nothing(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(path: Path, data: bytes) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", str(path))
+
+    monkeypatch.setattr("gtm_hit.ops.images.write_bytes", full)
+    (problem,) = problems_of(folder)
+    assert problem.endswith("No space left on device")

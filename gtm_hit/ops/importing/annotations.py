@@ -16,7 +16,7 @@ from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Annotation, Dataset
-from gtm_hit.ops.annotation_rules import HEIGHTS, RADII, InvalidFrame, Row, checked, is_number
+from gtm_hit.ops.annotation_rules import HEIGHTS, MAX_PEOPLE, RADII, Row, is_number
 
 
 @dataclass(frozen=True)
@@ -42,14 +42,14 @@ def read_annotations(
         try:
             # Positions are the truth; a file without boxes loses nothing.
             people = read_frame(path, grid, cameras, views_required=False).people
-            rows = [_row(person, cylinder) for person in people]
-            rows, _seconds = checked(rows, grid, done=True, nobody=not rows, seconds=0)
-            frames.append(ImportedFrame(number, rows, people))
         except FormatError as error:
             problems.extend(error.problems)
-        except InvalidFrame as error:
-            for problem in error.problems:
-                problems.add(problem.place, problem.reason, path)
+        else:
+            if len(people) > MAX_PEOPLE:
+                problems.add("", f"{len(people)} people; at most {MAX_PEOPLE} fit in a frame", path)
+            # The reader has refused what `annotation_rules.checked` would, and is several times as fast.
+            rows = sorted((_row(person, cylinder) for person in people), key=lambda row: row["person"])
+            frames.append(ImportedFrame(number, rows, people))
         progress(done, len(paths))
     return frames
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
 from typing import TypeVar
@@ -12,10 +12,12 @@ from typing import TypeVar
 import numpy as np
 from django.core.exceptions import ValidationError
 
+from gtm_hit.formats.calibration_files import CalibrationFiles, match_names
 from gtm_hit.formats.calibration_xml import Extrinsic, Intrinsic, read_extrinsic, read_intrinsic
+from gtm_hit.formats.camera_json import load_cameras, load_taken
 from gtm_hit.formats.layout import Layout
 from gtm_hit.formats.problems import FormatError, ProblemList
-from gtm_hit.geometry.camera import CalibrationError, Camera, undistort_maps, undistorted
+from gtm_hit.geometry.camera import CalibrationError, Camera, Floats, undistort_maps, undistorted
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.models import Camera as CameraRow
 from gtm_hit.models.dataset import name_validator
@@ -42,9 +44,34 @@ def read_views(
     layout: Layout, sizes: Mapping[str, tuple[int, int]], unit: str, undistort: bool, problems: ProblemList
 ) -> list[View]:
     """The cameras in order; those with problems are left out."""
+    files = CalibrationFiles(
+        extrinsic=layout.extrinsic,
+        intrinsic=layout.intrinsic,
+        intrinsic_original=layout.intrinsic_original,
+        cameras_json=layout.cameras_json,
+    )
+    return views_of(files, layout.cameras, sizes, unit, undistort, problems)
+
+
+def views_of(
+    files: CalibrationFiles,
+    names: Sequence[str],
+    sizes: Mapping[str, tuple[int, int]],
+    unit: str,
+    undistort: bool,
+    problems: ProblemList,
+) -> list[View]:
+    """The cameras `names` in order; those with problems, or of no known size, are left out."""
+    for name in names:
+        try:
+            name_validator(name)
+        except ValidationError as error:
+            problems.add(f"camera {name}", " ".join(error.messages))
+    if files.cameras_json is not None:
+        return _views_of_json(files.cameras_json, names, sizes, undistort, problems)
     views = []
-    for index, name in enumerate(layout.cameras):
-        view = _read_view(layout, index, name, sizes.get(name), unit, undistort, problems)
+    for index, name in enumerate(names):
+        view = _read_view(files, index, name, sizes.get(name), unit, undistort, problems)
         if view is not None:
             views.append(view)
     return views
@@ -98,8 +125,50 @@ def tell_differences(
             )
 
 
+def _views_of_json(
+    path: Path,
+    names: Sequence[str],
+    sizes: Mapping[str, tuple[int, int]],
+    undistort: bool,
+    problems: ProblemList,
+) -> list[View]:
+    """The file is in metres whatever unit the import was told: its format knows no other."""
+    try:
+        ideals = {camera.name: camera for camera in load_cameras(path)}
+        takens = {camera.name: camera for camera in load_taken(path)}
+    except FormatError as error:
+        problems.extend(error.problems)
+        return []
+    found = match_names(names, list(ideals))
+    for name in set(ideals) - set(found.values()):
+        problems.add(f"camera {name}", "belongs to no camera that has images", path)
+    views = []
+    for index, name in enumerate(names):
+        if name not in found:
+            problems.add("cameras", f"none is camera {name}", path)
+            continue
+        ideal, size = ideals[found[name]], sizes.get(name)
+        if size is None:
+            continue
+        if (ideal.width, ideal.height) != size:
+            reason = f"{ideal.width}×{ideal.height} pixels, but the images have {size[0]}×{size[1]}"
+            problems.add(f"camera {ideal.name}", reason, path)
+            continue
+        taken = replace(takens[ideal.name] if undistort else ideal, index=index, name=name)
+        try:
+            views.append(undistorting(taken, ideal.matrix) if undistort else View(taken))
+        except CalibrationError as error:
+            problems.add("", str(error), path)
+    return views
+
+
+def undistorting(taken: Camera, matrix: Floats) -> View:
+    """The view of images whose lens is taken out, with the camera matrix they get."""
+    return View(undistorted(taken, matrix), remapper(*undistort_maps(taken, matrix)))
+
+
 def _read_view(
-    layout: Layout,
+    files: CalibrationFiles,
     index: int,
     name: str,
     size: tuple[int, int] | None,
@@ -107,15 +176,11 @@ def _read_view(
     undistort: bool,
     problems: ProblemList,
 ) -> View | None:
-    try:
-        name_validator(name)
-    except ValidationError as error:
-        problems.add(f"camera {name}", " ".join(error.messages))
-    taken, target = layout.intrinsic.get(name), None
+    taken, target = files.intrinsic.get(name), None
     if undistort or taken is None:
         # Without --undistort, original intrinsics alone mean: annotate in the pictures as they were taken.
-        taken, target = layout.intrinsic_original.get(name, taken), taken
-    extrinsic = _read(read_extrinsic, layout.extrinsic.get(name), problems)
+        taken, target = files.intrinsic_original.get(name, taken), taken
+    extrinsic = _read(read_extrinsic, files.extrinsic.get(name), problems)
     intrinsic = _read(read_intrinsic, taken, problems)
     ideal = _read(read_intrinsic, target, problems) if undistort and target != taken else None
     if extrinsic is None or intrinsic is None or size is None:
@@ -125,8 +190,7 @@ def _read_view(
         camera = Camera(index, name, *size, intrinsic.matrix, pose.rvec, pose.tvec, intrinsic.distortion)
         if not undistort:
             return View(camera)
-        matrix = camera.matrix if ideal is None else ideal.matrix
-        return View(undistorted(camera, matrix), remapper(*undistort_maps(camera, matrix)))
+        return undistorting(camera, camera.matrix if ideal is None else ideal.matrix)
     except CalibrationError as error:
         problems.add("", str(error), taken)
         return None
