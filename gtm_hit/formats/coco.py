@@ -53,13 +53,15 @@ class CocoFile:
     boxes: tuple[CocoBox, ...]
 
 
-def read_coco(path: Path) -> CocoFile:
+def read_coco(path: Path, repeated: bool = False) -> CocoFile:
     """Raises FormatError, as `parse_coco`."""
-    return parse_coco(read_source(path, MOST_BYTES), str(path))
+    return parse_coco(read_source(path, MOST_BYTES), str(path), repeated)
 
 
-def parse_coco(data: bytes, path: str) -> CocoFile:
+def parse_coco(data: bytes, path: str, repeated: bool = False) -> CocoFile:
     """Images and the boxes of people; boxes of other categories are left out.
+
+    With `repeated`, people twice in an image are left to the caller.
 
     Raises FormatError with everything wrong: keys missing or of another type, ids used twice, boxes of no
     image or without area, a person twice in an image.
@@ -75,9 +77,9 @@ def parse_coco(data: bytes, path: str) -> CocoFile:
     ]
     _tell_repeated("images", [image.id for image in images], problems)
     _tell_repeated("annotations", [box.id for box in boxes], problems)
-    _tell_repeated(
-        "images and people", [(box.image, box.person) for box in boxes if box.person is not None], problems
-    )
+    if not repeated:
+        people_of_images = [(box.image, box.person) for box in boxes if box.person is not None]
+        _tell_repeated("images and people", people_of_images, problems)
     known = {image.id for image in images}
     for box in boxes:
         if box.image not in known:
@@ -87,20 +89,35 @@ def parse_coco(data: bytes, path: str) -> CocoFile:
 
 
 def write_coco(path: Path, images: Iterable[CocoImage], boxes: Iterable[CocoBox]) -> None:
-    """Writes one image or box per line, as they come, so that a file of any size takes no memory."""
-    category = {"id": CATEGORY, "name": "person", "supercategory": "person"}
     with replacing(path) as stream:
-        stream.write(b'{"images": [')
-        _write_list(stream, (_image_entry(image) for image in images))
-        stream.write(b'],\n"annotations": [')
-        _write_list(stream, (_box_entry(box) for box in boxes))
-        stream.write(b'],\n"categories": [' + json.dumps(category).encode() + b"]}\n")
+        writer = CocoWriter(stream)
+        writer.boxes(boxes)
+        writer.finish(images)
 
 
-def _write_list(stream: BinaryIO, entries: Iterable[Mapping[str, Any]]) -> None:
-    for index, entry in enumerate(entries):
-        stream.write(b",\n" if index else b"\n")
-        stream.write(json.dumps(entry, allow_nan=False).encode())
+class CocoWriter:
+    """Writes one box or image per line, as they come, so that a file of any size takes no memory."""
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self._stream = stream
+        self._first = True
+        stream.write(b'{"annotations": [')
+
+    def boxes(self, boxes: Iterable[CocoBox]) -> None:
+        self._entries(_box_entry(box) for box in boxes)
+
+    def finish(self, images: Iterable[CocoImage]) -> None:
+        category = {"id": CATEGORY, "name": "person", "supercategory": "person"}
+        self._stream.write(b'],\n"images": [')
+        self._first = True
+        self._entries(_image_entry(image) for image in images)
+        self._stream.write(b'],\n"categories": [' + json.dumps(category).encode() + b"]}\n")
+
+    def _entries(self, entries: Iterable[Mapping[str, Any]]) -> None:
+        for entry in entries:
+            text = json.dumps(entry, allow_nan=False)
+            self._stream.write(("\n" if self._first else ",\n").encode() + text.encode())
+            self._first = False
 
 
 def _image_entry(image: CocoImage) -> dict[str, Any]:

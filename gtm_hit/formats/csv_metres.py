@@ -36,13 +36,15 @@ class GroundPoints:
     lines: NDArray[np.int64] | None = None
 
 
-def read_csv(path: Path) -> GroundPoints:
+def read_csv(path: Path, repeated: bool = False) -> GroundPoints:
     """Raises FormatError, as `parse_csv`."""
-    return parse_csv(read_source(path, MOST_BYTES), str(path))
+    return parse_csv(read_source(path, MOST_BYTES), str(path), repeated)
 
 
-def parse_csv(data: bytes, path: str) -> GroundPoints:
+def parse_csv(data: bytes, path: str, repeated: bool = False) -> GroundPoints:
     """The people of a CSV file; the first line names the columns, in any order.
+
+    With `repeated`, people twice in a frame are left to the caller.
 
     Raises FormatError naming every line that is wrong: columns missing or unknown, values that are not finite
     numbers, negative frames or persons, heights that are not positive, a person twice in a frame.
@@ -61,7 +63,7 @@ def parse_csv(data: bytes, path: str) -> GroundPoints:
         values.append(_record(dict(zip(names, words, strict=True)), number, problems))
     table = np.array(values, dtype=np.float64).reshape(-1, 5)
     frames, persons = table[:, 0].astype(np.int64), table[:, 1].astype(np.int64)
-    if "person" in names:
+    if "person" in names and not repeated:
         tell_repeated(frames, persons, numbers, problems)
     problems.raise_if_any()
     return GroundPoints(
@@ -77,20 +79,26 @@ def write_csv(
     path: Path, tables: Iterable[GroundPoints], persons: bool = True, heights: bool = False
 ) -> None:
     """Writes tables one after the other; all of them need the columns asked for."""
-    names = ["frame", *(["person"] if persons else []), "x", "y", *(["height"] if heights else [])]
     with replacing(path) as stream:
-        stream.write((",".join(names) + "\n").encode())
+        stream.write(csv_header(persons, heights))
         for table in tables:
-            columns: list[list[str]] = [list(map(str, table.frames.tolist()))]
-            if persons:
-                columns.append(list(map(str, _present(table.persons).tolist())))
-            columns += [[short(value) for value in column] for column in table.xy.T.tolist()]
-            if heights:
-                # NaN is the only number that differs from itself.
-                columns.append(
-                    [short(each) if each == each else "" for each in _present(table.heights).tolist()]
-                )
-            stream.write("".join(",".join(row) + "\n" for row in zip(*columns, strict=True)).encode())
+            stream.write(csv_lines(table, persons, heights))
+
+
+def csv_header(persons: bool = True, heights: bool = False) -> bytes:
+    names = ["frame", *(["person"] if persons else []), "x", "y", *(["height"] if heights else [])]
+    return (",".join(names) + "\n").encode()
+
+
+def csv_lines(table: GroundPoints, persons: bool = True, heights: bool = False) -> bytes:
+    columns: list[list[str]] = [list(map(str, table.frames.tolist()))]
+    if persons:
+        columns.append(list(map(str, _present(table.persons).tolist())))
+    columns += [[short(value) for value in column] for column in table.xy.T.tolist()]
+    if heights:
+        # NaN is the only number that differs from itself.
+        columns.append([short(each) if each == each else "" for each in _present(table.heights).tolist()])
+    return "".join(",".join(row) + "\n" for row in zip(*columns, strict=True)).encode()
 
 
 def _check_names(names: list[str], number: int, problems: ProblemList) -> None:

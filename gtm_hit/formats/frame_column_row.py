@@ -35,34 +35,42 @@ class FrameColumnRow:
     lines: Ids | None = None  # (N,) where the rows stood in the file; None when they come from elsewhere
 
 
-def read(path: Path, *, persons: bool = False, may_be_empty: bool = False) -> FrameColumnRow:
+def read(
+    path: Path, *, persons: bool | None = False, may_be_empty: bool = False, repeated: bool = False
+) -> FrameColumnRow:
     """All lines of the file; raises FormatError naming every line that is wrong.
 
     With `persons` every line must have the fourth value; without it the fourth value is ignored where all
-    lines have one. `may_be_empty` is for a program's detections: it may have found nobody.
+    lines have one, and with None it is taken there. `may_be_empty` is for a program's detections: it may have
+    found nobody. With `repeated`, people twice in a frame are left to the caller.
     """
     problems = ProblemList(path)
-    lines = [] if may_be_empty and _is_empty(path) else _lines(read_source(path, MOST_BYTES))
-    lengths = {len(words) for _, words in lines}
-    if not (lines or may_be_empty):
+    found = [] if may_be_empty and _is_empty(path) else _lines(read_source(path, MOST_BYTES))
+    lengths = {len(words) for _, words in found}
+    if not (found or may_be_empty):
         problems.add("", "holds no `frame column row` line")
     if persons and lengths == {3}:
         problems.add("", "no line has a person, the fourth value")
         problems.raise_if_any()
     expected = 4 if persons or lengths == {4} else 3
-    values = [_values(number, words, expected, problems) for number, words in lines]
-    if persons:
-        _report_repeated(lines, values, problems)
+    values = [_values(number, words, expected, problems) for number, words in found]
+    identified = expected == 4 and persons is not False
+    if identified and not repeated:
+        _report_repeated(found, values, problems)
     problems.raise_if_any()
     table = np.array(values, dtype=np.int64).reshape(-1, expected)
-    numbers = np.array([number for number, _ in lines], dtype=np.int64)
-    return FrameColumnRow(table[:, 0], table[:, 1], table[:, 2], table[:, 3] if persons else None, numbers)
+    numbers = np.array([number for number, _ in found], dtype=np.int64)
+    return FrameColumnRow(table[:, 0], table[:, 1], table[:, 2], table[:, 3] if identified else None, numbers)
 
 
 def write(path: Path, table: FrameColumnRow) -> None:
+    write_bytes(path, lines(table))
+
+
+def lines(table: FrameColumnRow) -> bytes:
     parts = [table.frames, table.columns, table.rows]
     rows = np.column_stack([*parts, table.persons] if table.persons is not None else parts)
-    write_bytes(path, "".join(" ".join(map(str, row)) + "\n" for row in rows.tolist()).encode())
+    return "".join(" ".join(map(str, row)) + "\n" for row in rows.tolist()).encode()
 
 
 def _is_empty(path: Path) -> bool:

@@ -63,8 +63,12 @@ def read_frames(
     problems.raise_if_any()
 
 
-def read_frame(path: Path, grid: Grid, cameras: int, views_required: bool = True) -> FrameAnnotations:
+def read_frame(
+    path: Path, grid: Grid, cameras: int, views_required: bool = True, repeated: bool = False
+) -> FrameAnnotations:
     """The people of one file; the frame number is the one its name ends with.
+
+    With `repeated`, people twice in the file are left to the caller.
 
     Raises FormatError with everything wrong in the file.
     """
@@ -73,7 +77,7 @@ def read_frame(path: Path, grid: Grid, cameras: int, views_required: bool = True
     problems = ProblemList(path)
     if match is None:
         problems.add("", "the name does not end with a frame number of at most 9 digits")
-    people = _people(data, grid, cameras, views_required, problems)
+    people = _people(data, grid, cameras, views_required, problems, repeated)
     problems.raise_if_any()
     return FrameAnnotations(int(match[1]) if match else -1, people)
 
@@ -139,7 +143,12 @@ def _extra_text(extra: Mapping[str, Any]) -> str:
 
 
 def _people(
-    data: bytes, grid: Grid, cameras: int, views_required: bool, problems: ProblemList
+    data: bytes,
+    grid: Grid,
+    cameras: int,
+    views_required: bool,
+    problems: ProblemList,
+    repeated: bool = False,
 ) -> list[PersonPosition]:
     entries = _entries(data, problems)
     people = []
@@ -152,7 +161,7 @@ def _people(
         person = _id(entry, "personID", MOST_ID, place, problems)
         position = _id(entry, "positionID", grid.count - 1, place, problems)
         boxes = _boxes(entry, cameras, place, problems) if views_required or "views" in entry else None
-        if person >= 0 and (first := first_at.setdefault(person, index)) != index:
+        if not repeated and person >= 0 and (first := first_at.setdefault(person, index)) != index:
             problems.add(place, f"person {person} is already in entry {first}")
         extra = {key: value for key, value in entry.items() if key not in _PERSON_KEYS}
         people.append(PersonPosition(person, position, boxes, extra))
