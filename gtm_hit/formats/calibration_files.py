@@ -11,6 +11,7 @@ from gtm_hit.formats.dataset_folder import DatasetFolder
 
 CALIBRATION_FOLDER = "calibrations"
 CALIBRATION_SUFFIXES = {".xml", ".yml", ".yaml"}
+CAMERAS_JSON = "cameras.json"
 
 _PREFIX = re.compile(r"^(extr|intr)(?:insics?)?[_-]", re.IGNORECASE)
 _NUMBER = re.compile(r"([0-9]{1,18})$")
@@ -18,27 +19,36 @@ _NUMBER = re.compile(r"([0-9]{1,18})$")
 
 @dataclass(frozen=True)
 class CalibrationFiles:
-    """Files by camera; `names` are what the files call the cameras."""
+    """Files by camera, `names` being what the files call the cameras.
+
+    Or `cameras_json` alone, which holds all cameras under names of its own.
+    """
 
     names: Mapping[str, str] = field(default_factory=dict)
     extrinsic: Mapping[str, Path] = field(default_factory=dict)
     intrinsic: Mapping[str, Path] = field(default_factory=dict)
     intrinsic_original: Mapping[str, Path] = field(default_factory=dict)
+    cameras_json: Path | None = None
 
 
 def find_calibrations(
     dataset: DatasetFolder, cameras: Collection[str], chosen: Path | None = None
 ) -> CalibrationFiles:
-    """The files in `calibrations/`: one folder per part, or all in one where a file may hold both parts.
+    """The files in `calibrations/`: one folder per part, or all in one where a file may hold both parts, or
+    a `cameras.json` (see `camera_json`).
 
-    `chosen` is another folder of that kind, seen from the dataset's.
+    `chosen` is another folder of that kind, or a file of the last, seen from the dataset's folder.
     """
     folder = dataset.root / (chosen or CALIBRATION_FOLDER)
+    if folder.is_file() and folder.suffix.lower() == ".json":
+        return CalibrationFiles(cameras_json=folder)
     if not folder.is_dir():
         dataset.problems.add("", f"no folder {chosen or CALIBRATION_FOLDER}", dataset.root)
         return CalibrationFiles()
     if chosen is not None:
         dataset = dataset.at(folder)
+    if (folder / CAMERAS_JSON).is_file():
+        return _json_alone(dataset, folder)
     extrinsic_folder, intrinsic_folder = folder / "extrinsic", folder / "intrinsic_zero"
     if not extrinsic_folder.is_dir():
         extrinsic_folder = intrinsic_folder = folder
@@ -70,6 +80,14 @@ def match_names(cameras: Collection[str], names: Collection[str]) -> dict[str, s
     return {
         camera_numbers[number]: name_numbers[number] for number in camera_numbers if number in name_numbers
     }
+
+
+def _json_alone(dataset: DatasetFolder, folder: Path) -> CalibrationFiles:
+    found = {path.name: path for path in dataset.entries(folder)}
+    for path in found.values():
+        if path.is_dir() or path.suffix.lower() in CALIBRATION_SUFFIXES:
+            dataset.problems.add("", f"lies beside {CAMERAS_JSON}: keep one of the two calibrations", path)
+    return CalibrationFiles(cameras_json=found.get(CAMERAS_JSON))
 
 
 def _numbers(names: Collection[str]) -> dict[int, str]:

@@ -22,7 +22,7 @@ Cameras are numbered in the order of the list. Keys not named here are ignored.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -40,12 +40,21 @@ def load_cameras(path: Path, original: bool = False) -> list[Camera]:
 
     FormatError with everything that is wrong; with `original`, that includes a camera without such numbers.
     """
+    return _load(path, lambda _facts: original)
+
+
+def load_taken(path: Path) -> list[Camera]:
+    """Cameras of the images as they were taken: `original` where a camera has it, else its only numbers."""
+    return _load(path, lambda facts: isinstance(facts, dict) and "original" in facts)
+
+
+def _load(path: Path, wants_original: Callable[[Any], bool]) -> list[Camera]:
     problems = ProblemList(path)
     cameras: list[Camera] = []
     for index, facts in enumerate(_entries(path)):
         place = f"cameras[{index}]"
         try:
-            cameras.append(_camera(index, facts, original))
+            cameras.append(_camera(index, facts, wants_original(facts)))
         except KeyError as error:
             problems.add(place, f"{error.args[0]} is missing")
         except (CalibrationError, TypeError) as error:

@@ -25,7 +25,8 @@ class Layout:
     `cameras` are the names of the image folders in natural order, which is the order of `viewNum`, and
     `calibration_names` what their calibration calls them (CVLab1 ... IDIAP3 for WILDTRACK's C1 ... C7).
     `intrinsic` belongs to images without lens distortion or with little (MultiviewX), `intrinsic_original` to
-    images as the cameras took them; one of the two may be empty. `annotations` is by the number of the frame
+    images as the cameras took them; one of the two may be empty. All are empty where `cameras_json` holds the
+    calibration. `annotations` is by the number of the frame
     they belong to, which is `annotation_offset` less than the number in the file name.
     """
 
@@ -38,6 +39,7 @@ class Layout:
     intrinsic_original: Mapping[str, Path]
     annotations: Mapping[int, Path]
     annotation_offset: int
+    cameras_json: Path | None = None
 
     @property
     def frames(self) -> tuple[int, ...]:
@@ -102,6 +104,7 @@ def _find_layout(
         intrinsic_original=files.intrinsic_original,
         annotations={number - annotation_offset: path for number, path in annotation_files.items()},
         annotation_offset=annotation_offset,
+        cameras_json=files.cameras_json,
     )
 
 
