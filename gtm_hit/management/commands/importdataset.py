@@ -76,19 +76,12 @@ def add_places(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--images", type=Path, help="folder with a folder or an image per camera (default: Image_subsets)"
     )
-    group.add_argument("--calibrations", type=Path, help="default: calibrations")
+    group.add_argument("--calibrations", type=Path, help="folder, or a cameras.json (default: calibrations)")
     group.add_argument("--annotations", type=Path, help="default: annotations_positions")
 
 
 def add_scene(group: argparse._ArgumentGroup) -> None:
-    group.add_argument("--tvec-unit", choices=sorted(UNITS), help="unit of tvec in the extrinsic files")
-    group.add_argument("--grid", type=pair(int, "x"), metavar="COLUMNSxROWS", help="positions along X and Y")
-    group.add_argument("--step", type=float, metavar="METRES", help="between neighbouring positions")
-    group.add_argument("--origin", type=pair(float, ","), metavar="X,Y", help="metres, of position 0")
-    group.add_argument(
-        "--cylinder", type=pair(float, ","), metavar="R,H", help="radius and height, metres (0.16,1.8)"
-    )
-    group.add_argument("--foot-rule", choices=[rule.value for rule in FootRule])
+    add_scene_values(group)
     group.add_argument("--frame-rate", type=float, metavar="N", help="frame numbers per second")
     group.add_argument("--frame-step", type=int, metavar="N", help="import every N-th frame number")
     group.add_argument(
@@ -97,6 +90,17 @@ def add_scene(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--undistort", action="store_true", help="take the lens out of the images, by intrinsic_original"
     )
+
+
+def add_scene_values(group: argparse._ArgumentGroup) -> None:
+    group.add_argument("--tvec-unit", choices=sorted(UNITS), help="unit of tvec in the extrinsic files")
+    group.add_argument("--grid", type=pair(int, "x"), metavar="COLUMNSxROWS", help="positions along X and Y")
+    group.add_argument("--step", type=float, metavar="METRES", help="between neighbouring positions")
+    group.add_argument("--origin", type=pair(float, ","), metavar="X,Y", help="metres, of position 0")
+    group.add_argument(
+        "--cylinder", type=pair(float, ","), metavar="R,H", help="radius and height, metres (0.16,1.8)"
+    )
+    group.add_argument("--foot-rule", choices=[rule.value for rule in FootRule])
 
 
 def add_layer(group: argparse._ArgumentGroup) -> None:
@@ -140,15 +144,15 @@ def given_values(options: dict[str, Any]) -> SceneValues:
         "foot_rule": options["foot_rule"],
         "frame_rate": options["frame_rate"],
         "frame_step": options["frame_step"],
-        "annotation_offset": options["annotation_offset"],
-        "annotation_digits": options["annotation_digits"],
+        "annotation_offset": options.get("annotation_offset"),
+        "annotation_digits": options.get("annotation_digits"),
     }
     return SceneValues(**{name: value for name, value in values.items() if value is not None})  # type: ignore[typeddict-item]
 
 
 def given_folder(path: Path | None) -> Path | None:
     """As a shell completes it, seen from here; else seen from the dataset's folder."""
-    return path.absolute() if path is not None and path.is_dir() else path
+    return path.absolute() if path is not None and path.exists() else path
 
 
 def pair(number: Callable[[str], Number], separator: str) -> Callable[[str], tuple[Number, Number]]:

@@ -6,7 +6,6 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
-from gtm_hit.demo.scene import SceneError
 from gtm_hit.management.progress import ProgressLine
 from gtm_hit.ops.demo import DemoError, make_demo
 from gtm_hit.ops.importing.dataset import ImportFailed
@@ -27,7 +26,7 @@ class Command(BaseCommand):
         progress = ProgressLine(self.stdout)
         try:
             demo = make_demo(slug, frames, seed, progress)
-        except (DemoError, SceneError, ImportFailed) as error:
+        except (DemoError, ImportFailed) as error:
             progress.finish()
             raise CommandError(str(error)) from error
         progress.finish()
