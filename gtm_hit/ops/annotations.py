@@ -115,7 +115,7 @@ def save_frame(
 def write_save(layer: Layer, frame: Frame, save: Save) -> FrameState:
     # Always in this order, assignment then frame: two orders would let two requests wait for each other.
     assignment = assignments.locked_for_layer(layer)
-    head, _created = LayerFrame.objects.select_for_update().get_or_create(layer=layer, frame=frame)
+    head, _created = LayerFrame.objects.select_for_update(no_key=True).get_or_create(layer=layer, frame=frame)
     if repeated := Save.objects.select_related("worker", "user").filter(save_id=save.save_id).first():
         return repeated_answer(repeated, save, head, frame)
     assignments.require_editable(layer, assignment, save.worker)
@@ -174,7 +174,8 @@ def state_of(save: Save, frame: Frame) -> FrameState:
     return FrameState(
         number=frame.number,
         revision=save.revision,
-        annotations=save.annotations,
+        # PostgreSQL keeps the keys of JSON objects in an order of its own.
+        annotations=[{name: row[name] for name in ROW_FIELDS} for row in save.annotations],
         done=save.done,
         nobody=save.nobody,
         saved_at=save.created_at,

@@ -1,4 +1,8 @@
-"""Leases: who gets which batch, until when, and what ends it. The database decides who was first."""
+"""Leases: who gets which batch, until when, and what ends it. The database decides who was first.
+
+Locks are taken in one order: worker, batch, assignment, frame. They are `no_key`, because full ones
+also block PostgreSQL's checks of foreign keys at the end of other transactions.
+"""
 
 from __future__ import annotations
 
@@ -62,15 +66,20 @@ def expire_leases(now: datetime | None = None) -> int:
     with transaction.atomic():
         # Whoever else is ending one of these leases at this moment must not be waited for: two who
         # wait for each other are a deadlock.
-        ended = list(overdue.select_for_update(skip_locked=True).values_list("pk", flat=True))
+        ended = list(overdue.select_for_update(no_key=True, skip_locked=True).values_list("pk", flat=True))
         return Assignment.objects.filter(pk__in=ended).update(state=State.EXPIRED) if ended else 0
+
+
+def running() -> QuerySet[Assignment]:
+    """Leases that have not run out: a row may say `leased` for a moment longer than it is true."""
+    return Assignment.objects.filter(state=State.LEASED, expires_at__gt=timezone.now())
 
 
 def current(worker: Worker, dataset: Dataset) -> Assignment | None:
     """What the worker has to do in the dataset now: returned work first, then the running lease."""
     mine = Assignment.objects.filter(worker=worker, batch__dataset=dataset).select_related("batch")
     returned = mine.filter(state=State.RETURNED).first()
-    return returned or mine.filter(state=State.LEASED, expires_at__gt=timezone.now()).first()
+    return returned or running().filter(pk__in=mine).select_related("batch").first()
 
 
 def claim(worker: Worker, dataset: Dataset) -> Assignment:
@@ -79,6 +88,9 @@ def claim(worker: Worker, dataset: Dataset) -> Assignment:
     Raises NoFreeBatch or BusyElsewhere.
     """
     for _attempt in range(MAX_TRIES):
+        # In a transaction of its own: one that ends leases and then waits for a batch blocks whoever
+        # is about to take that batch.
+        expire_leases()
         try:
             with transaction.atomic():
                 return claim_once(worker, dataset)
@@ -89,17 +101,16 @@ def claim(worker: Worker, dataset: Dataset) -> Assignment:
 
 def claim_once(worker: Worker, dataset: Dataset) -> Assignment:
     # Two tabs of one worker queue here, so that neither holds a second batch even for a moment.
-    Worker.objects.select_for_update().get(pk=worker.pk)
-    expire_leases()
+    Worker.objects.select_for_update(no_key=True).get(pk=worker.pk)
     if held := current(worker, dataset):
         return held
-    elsewhere = Assignment.objects.filter(worker=worker, state=State.LEASED).select_related("batch__dataset")
-    if other := elsewhere.first():
+    elsewhere = running().filter(worker=worker).exclude(batch__dataset=dataset)
+    if other := elsewhere.select_related("batch__dataset").first():
         raise BusyElsewhere(other)
     if own := regained(worker, dataset):
         return own
     # Skipping what others are about to take (SQLite has one writer at a time anyway).
-    batch = free_batches(worker, dataset).select_for_update(skip_locked=True).first()
+    batch = free_batches(worker, dataset).select_for_update(no_key=True, skip_locked=True).first()
     if batch is None:
         raise NoFreeBatch(f"{dataset}: no batch for {worker}")
     return lease(batch, worker)
@@ -141,9 +152,10 @@ def regained(worker: Worker, dataset: Dataset) -> Assignment | None:
     own = own_expired(worker, dataset).first()
     if own is None:
         return None
+    # The same lock as for a free batch: whoever is about to take it is let through first.
+    Batch.objects.select_for_update(no_key=True).get(pk=own.batch_id)
     changes = {"state": State.LEASED, "leased_at": timezone.now(), "expires_at": lease_end()}
-    # The unique constraint on held batches refuses this if somebody was faster.
-    if not Assignment.objects.filter(pk=own.pk, state=State.EXPIRED).update(**changes):
+    if not own_expired(worker, dataset).filter(pk=own.pk).update(**changes):
         return None
     own.refresh_from_db()
     return own
@@ -158,7 +170,7 @@ def lease(batch: Batch, worker: Worker) -> Assignment:
 def locked_for_layer(layer: Layer) -> Assignment | None:
     if layer.kind != Layer.Kind.ASSIGNMENT:
         return None
-    return Assignment.objects.select_for_update().filter(layer=layer).first()
+    return Assignment.objects.select_for_update(no_key=True).filter(layer=layer).first()
 
 
 def require_editable(layer: Layer, assignment: Assignment | None, worker: Worker | None) -> None:
@@ -196,9 +208,7 @@ def extend(assignment: Assignment) -> None:
 def submit(assignment: Assignment) -> Assignment:
     """End the work and give its code; again: the same code. Raises Unfinished or ReadOnly."""
     with transaction.atomic():
-        locked = (
-            Assignment.objects.select_for_update().select_related("batch", "worker").get(pk=assignment.pk)
-        )
+        locked = Assignment.objects.select_for_update(no_key=True).get(pk=assignment.pk)
         if locked.state in {State.SUBMITTED, State.ACCEPTED, State.REJECTED}:
             return locked
         if reason := read_only_reason(locked):

@@ -28,7 +28,7 @@ def make_batches(dataset: Dataset, size: int = 10, copies: int = 1) -> int:
         raise BatchError(_("Make 1 to %(most)d copies of a batch.") % {"most": MAX_COPIES})
     with transaction.atomic():
         # Two people pressing the button at once queue here.
-        Dataset.objects.select_for_update().get(pk=dataset.pk)
+        Dataset.objects.select_for_update(no_key=True).get(pk=dataset.pk)
         frames_of, copies_of = existing(dataset)
         number = max(frames_of, default=0)
         for chunk in new_chunks(dataset, {frame for ids in frames_of.values() for frame in ids}, size):

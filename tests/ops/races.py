@@ -176,7 +176,23 @@ def saving_and_submitting() -> Contest:
     return [*saves, lambda: assignments.submit(assignment).state]
 
 
+def looking_back() -> Contest:
+    """No race: what the history says, which each database counts in its own way."""
+    from gtm_hit.ops.annotations import history, state_at
+    from tests.work_scene import make_dataset, make_layer, row, save
+
+    dataset = make_dataset("history", frames=1)
+    layer, frame = make_layer(dataset), dataset.frames.get()
+    save(layer, frame, [row(1), row(2)])
+    save(layer, frame, [], 1)
+    return [
+        lambda: [revision.people for revision in history(layer, frame)],
+        lambda: [list(row) for row in state_at(layer, frame, 1).annotations],
+    ]
+
+
 RACES = [
+    looking_back,
     claiming,
     claiming_copies,
     one_worker,

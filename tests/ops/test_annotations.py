@@ -55,8 +55,8 @@ def test_a_save_replaces_the_frame(layer: Layer, frame: Frame) -> None:
 
 def test_annotations_are_stored_by_person_with_every_key(layer: Layer, frame: Frame) -> None:
     save(layer, frame, [{"person": 5, "position": 1}, row(2, height=1.5)])
-    kept = Save.objects.get().annotations
-    assert kept == [row(2, height=1.5), row(5, 1)]
+    kept = state_at(layer, frame, 1).annotations
+    assert kept == Save.objects.get().annotations == [row(2, height=1.5), row(5, 1)]
     assert list(kept[0]) == ["person", "position", "state", "origin", "height", "radius"]
 
 

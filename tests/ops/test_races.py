@@ -94,6 +94,12 @@ def test_a_batch_submitted_ten_times_has_one_code(races: Races) -> None:
     assert len(races["submitting"][0]) == 20
 
 
+def test_the_history_reads_the_same_on_every_database(races: Races) -> None:
+    keys = ["person", "position", "state", "origin", "height", "radius"]
+    assert [keys, keys] in races["looking_back"]
+    assert [2, 0] in races["looking_back"]
+
+
 def test_no_save_slips_in_after_the_submission(races: Races) -> None:
     assert "submitted" in races["saving_and_submitting"]
     assert set(races["saving_and_submitting"]) <= {"submitted", 2, "ReadOnly"}
