@@ -12,9 +12,9 @@ import numpy as np
 
 from gtm_hit.formats.wildtrack_json import PersonPosition, frame_json
 from gtm_hit.geometry.camera import Camera
-from gtm_hit.geometry.cylinder import Cylinder, rectangles
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Annotation, Dataset, Layer, LayerFrame
+from gtm_hit.ops.rectangles import annotation_rectangles
 
 FRAMES_PER_CHUNK = 250
 METRE_DIGITS = 6  # micrometres: enough to hide the last bits of floating point, not a position
@@ -76,31 +76,15 @@ class FrameReader:
 
     def _people(self, rows: list[Row]) -> Iterator[PersonPosition]:
         positions = np.array([row[2] for row in rows], dtype=np.int64)
-        boxes, visible = self.table.rectangles(positions)
-        self._replace_own_cylinders(rows, positions, boxes, visible)
+        # None becomes NaN: the dataset's own cylinder.
+        heights, radii = (np.array([row[column] for row in rows], dtype=np.float64) for column in (3, 4))
+        boxes, visible = annotation_rectangles(
+            self.dataset, self.cameras, self.table, positions, heights, radii
+        )
         shown = np.where(visible[:, :, None], boxes, np.int16(-1))
         metres = self.dataset.grid.metres(positions).round(METRE_DIGITS).tolist()
         for row, box, (x, y) in zip(rows, shown, metres, strict=True):
             yield PersonPosition(row[1], row[2], box, extra(row, x, y))
-
-    def _replace_own_cylinders(
-        self, rows: list[Row], positions: np.ndarray, boxes: np.ndarray, visible: np.ndarray
-    ) -> None:
-        """The table knows the dataset's cylinder; rectangles of other sizes are computed here."""
-        usual = self.dataset.cylinder
-        sizes: dict[Cylinder, list[int]] = {}
-        for index, (_, _, _, height, radius, _, _) in enumerate(rows):
-            if height is not None or radius is not None:
-                own = Cylinder(
-                    usual.radius if radius is None else radius,
-                    usual.height if height is None else height,
-                )
-                sizes.setdefault(own, []).append(index)
-        for own, indices in sizes.items():
-            for number, camera in enumerate(self.cameras):
-                boxes[indices, number], visible[indices, number] = rectangles(
-                    camera, self.dataset.grid, own, self.dataset.rule, positions[indices]
-                )
 
 
 def extra(row: Row, x: float, y: float) -> dict[str, Any]:
