@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from django.core.files.storage import default_storage
 from django.db.models import Q
 from django.http import FileResponse, Http404, HttpResponse, HttpResponseNotModified
@@ -34,6 +36,10 @@ class MaySeePictures(BasePermission):
 class ImageView(APIView):
     authentication_classes = [AssignmentAuthentication, WorkerAuthentication, StaffSession]
     permission_classes = [MaySeePictures]
+
+    def perform_content_negotiation(self, request: Request, force: bool = False) -> Any:
+        # Pictures are no JSON: a client that accepts pictures only is right here.
+        return super().perform_content_negotiation(request, force=True)
 
     @extend_schema(
         summary="A picture",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from django.utils.translation import gettext as _
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
@@ -33,7 +34,7 @@ class StrictBooleanField(serializers.BooleanField):
 
     def to_internal_value(self, data: Any) -> bool:
         if not isinstance(data, bool):
-            raise serializers.ValidationError("Must be true or false.")
+            raise serializers.ValidationError(_("Must be true or false."))
         return data
 
 
@@ -118,7 +119,7 @@ class CheckSerializer(serializers.Serializer[Any]):
 
     def validate_step(self, value: str) -> Step:
         if value not in set(Step):
-            raise serializers.ValidationError("Must be one of " + ", ".join(Step))
+            raise serializers.ValidationError(_("Must be one of %(choices)s.") % {"choices": ", ".join(Step)})
         return Step(value)
 
 

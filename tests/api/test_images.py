@@ -53,6 +53,10 @@ def test_a_picture_the_browser_has_is_not_sent_again(alice: Caller, path: str) -
     assert response["Cache-Control"] == FOREVER
 
 
+def test_a_client_that_accepts_pictures_only_gets_one(alice: Caller, path: str) -> None:
+    assert alice.get(path, Accept="image/jpeg").status_code == 200
+
+
 def test_head_tells_the_size_only(alice: Caller, path: str) -> None:
     response = alice.head(path)
     assert (response.status_code, response["Content-Length"]) == (200, str(len(PICTURE)))
