@@ -48,7 +48,7 @@ def read_annotations(
             if len(people) > MAX_PEOPLE:
                 problems.add("", f"{len(people)} people; at most {MAX_PEOPLE} fit in a frame", path)
             # The reader has refused what `annotation_rules.checked` would, and is several times as fast.
-            rows = sorted((_row(person, cylinder) for person in people), key=lambda row: row["person"])
+            rows = sorted((row_of(person, cylinder) for person in people), key=lambda row: row["person"])
             frames.append(ImportedFrame(number, rows, people))
         progress(done, len(paths))
     return frames
@@ -75,7 +75,7 @@ def compare_boxes(
     for frame in frames:
         for person in frame.people:
             if person.boxes is not None:
-                groups[_cylinder(person, cylinder)].append(person)
+                groups[cylinder_of(person, cylinder)].append(person)
     different = total = 0
     for size, people in groups.items():
         positions = np.array([person.position for person in people])
@@ -92,8 +92,8 @@ def compare_boxes(
     return different, total
 
 
-def _row(person: PersonPosition, cylinder: Cylinder) -> Row:
-    size = _cylinder(person, cylinder)
+def row_of(person: PersonPosition, cylinder: Cylinder) -> Row:
+    size = cylinder_of(person, cylinder)
     return {
         "person": person.person,
         "position": person.position,
@@ -104,7 +104,7 @@ def _row(person: PersonPosition, cylinder: Cylinder) -> Row:
     }
 
 
-def _cylinder(person: PersonPosition, usual: Cylinder) -> Cylinder:
+def cylinder_of(person: PersonPosition, usual: Cylinder) -> Cylinder:
     height, radius = person.extra.get("height"), person.extra.get("radius")
     return Cylinder(
         float(radius) if is_number(radius, *RADII) else usual.radius,  # type: ignore[arg-type]

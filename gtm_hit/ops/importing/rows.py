@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import islice
 
 from gtm_hit.geometry.camera import Camera as CalibratedCamera
 from gtm_hit.models import Annotation, Camera, Dataset, Frame, Image, Layer, LayerFrame, Save
@@ -12,6 +13,7 @@ from gtm_hit.ops.importing.annotations import ImportedFrame
 from gtm_hit.ops.importing.pictures import Key
 
 ROWS_AT_ONCE = 2000
+FRAMES_AT_ONCE = 500  # with all their people in memory
 
 
 def add_cameras(dataset: Dataset, cameras: Sequence[CalibratedCamera]) -> None:
@@ -56,9 +58,17 @@ def add_frames(dataset: Dataset, numbers: Sequence[int], made: Mapping[Key, Deri
     )
 
 
-def add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
+def add_annotations(layer: Layer, imported: Iterable[ImportedFrame]) -> None:
     """Frames the layer does not have yet, each with its first save, done."""
-    frames = {frame.number: frame for frame in Frame.objects.filter(dataset=layer.dataset)}
+    following = iter(imported)
+    while together := list(islice(following, FRAMES_AT_ONCE)):
+        _add_annotations(layer, together)
+
+
+def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
+    numbers = [each.number for each in imported]
+    found = Frame.objects.filter(dataset=layer.dataset, number__in=numbers)
+    frames = {frame.number: frame for frame in found}
     heads = LayerFrame.objects.bulk_create(
         [
             LayerFrame(layer=layer, frame=frames[each.number], revision=1, done=True, nobody=not each.rows)

@@ -1,0 +1,1 @@
+"""Annotations of other programs into a layer: read → list what does not fit → place → write, or nothing."""

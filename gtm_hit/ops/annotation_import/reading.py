@@ -1,0 +1,271 @@
+"""Annotation files of every format into tables."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from gtm_hit.formats import frame_column_row
+from gtm_hit.formats.coco import CocoFile, CocoImage, read_coco
+from gtm_hit.formats.csv_metres import read_csv
+from gtm_hit.formats.dataset_folder import DatasetFolder
+from gtm_hit.formats.layout import ANNOTATION_FOLDER
+from gtm_hit.formats.mot import MotTable, read_mot
+from gtm_hit.formats.problems import FormatError, ProblemList
+from gtm_hit.formats.wildtrack_json import MOST_ID, FrameAnnotations, read_frame
+from gtm_hit.geometry.grid import Grid
+from gtm_hit.models import Dataset
+from gtm_hit.ops.annotation_import.tables import NOBODY, Boxes, Ids, People, Sources, people
+from gtm_hit.ops.importing.annotations import cylinder_of
+
+READING = "reading annotations"
+GROUND = "ground"  # the folder of a MOTChallenge export that says where people stand
+ANY_FRAME = range(1, 2**31)  # frames the dataset does not have are told later, line by line
+
+_NUMBER = re.compile(r"([0-9]{1,9})$")
+
+Report = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What files are read against."""
+
+    dataset: Dataset
+    cameras: Sequence[str]  # names, by index
+    numbers: Sequence[int]  # of all frames, ascending
+
+    @property
+    def grid(self) -> Grid:
+        return self.dataset.grid
+
+
+def read_wildtrack(path: Path, scene: Scene, report: Report) -> People:
+    """A folder of per-frame JSON, or a dataset's folder that has one."""
+    problems = ProblemList(path)
+    root = path / ANNOTATION_FOLDER if (path / ANNOTATION_FOLDER).is_dir() else path
+    if not root.is_dir():
+        problems.add("", "no such folder of JSON files", root)
+        problems.raise_if_any()
+    files = DatasetFolder(root, problems).by_number(root, {".json"})
+    if not files and not problems:
+        problems.add("", "no JSON files in this folder", root)
+    # Positions off the grid are told later, person by person.
+    anywhere = Grid(MOST_ID, 1, 1.0, 0.0, 0.0)
+    frames = []
+    for done, file in enumerate(files.values(), start=1):
+        try:
+            frames.append(read_frame(file, anywhere, len(scene.cameras), views_required=False, repeated=True))
+        except FormatError as error:
+            problems.extend(error.problems)
+        report(READING, done, len(files))
+    problems.raise_if_any()
+    return _people_of(frames, list(files.values()), scene)
+
+
+def read_csv_metres(path: Path, scene: Scene, report: Report) -> People:
+    table = read_csv(path, repeated=True)
+    report(READING, 1, 1)
+    sources = _lines(path, table.lines)
+    found = people(table.frames, table.persons, scene.grid.position(table.xy), sources)
+    if table.heights is None:
+        return found
+    usual = scene.dataset.cylinder_height
+    heights = np.where(table.heights == usual, np.nan, table.heights)
+    return People(found.frames, found.persons, found.positions, heights, found.radii, sources)
+
+
+def read_text(path: Path, scene: Scene, report: Report) -> People:
+    """`frame column row`, and the person where all lines have one."""
+    table = frame_column_row.read(path, persons=None, repeated=True)
+    report(READING, 1, 1)
+    grid = scene.grid
+    inside = (table.columns < grid.columns) & (table.rows < grid.rows)
+    positions = np.where(inside, table.rows * grid.columns + table.columns, NOBODY)
+    return people(table.frames, table.persons, positions, _lines(path, table.lines))
+
+
+def read_mot_files(path: Path, scene: Scene, report: Report) -> People | Boxes:
+    """A file of people on the ground, or a folder with a file per view; its ground file is taken alone."""
+    if path.is_file():
+        return _ground(path, read_mot(path, ANY_FRAME, repeated=True), scene)
+    views = _mot_views(path)
+    if GROUND in views and GROUND not in scene.cameras:
+        file = views[GROUND]
+        return _ground(file, read_mot(file, ANY_FRAME, repeated=True), scene)
+    tables: list[tuple[Path, str, MotTable]] = []
+    problems = ProblemList(path)
+    if not views:
+        problems.add("", "no MOTChallenge files: VIEW.txt or VIEW/gt/gt.txt")
+    for done, (name, file) in enumerate(views.items(), start=1):
+        try:
+            tables.append((file, name, read_mot(file, ANY_FRAME, repeated=True)))
+        except FormatError as error:
+            problems.extend(error.problems)
+        report(READING, done, len(views))
+    for file, _name, table in tables:
+        if table.boxes is None:
+            problems.add("", "has people on the ground: import this file alone", file)
+    problems.raise_if_any()
+    return _boxes_of_mot(tables, scene)
+
+
+def read_coco_files(path: Path, scene: Scene, report: Report) -> Boxes:
+    """One JSON file with the images of all views, or a folder with a file per view."""
+    problems = ProblemList(path)
+    files = [path]
+    if path.is_dir():
+        files = DatasetFolder(path, problems).files(path, {".json"})
+        files = [file for file in files if file.name != "manifest.json"]
+    if not files:
+        problems.add("", "no JSON files in this folder")
+    found: list[tuple[Path, CocoFile]] = []
+    for done, file in enumerate(files, start=1):
+        try:
+            found.append((file, read_coco(file, repeated=True)))
+        except FormatError as error:
+            problems.extend(error.problems)
+        report(READING, done, len(files))
+    problems.raise_if_any()
+    return _boxes_of_coco(found, scene, problems)
+
+
+READERS: Mapping[str, Callable[[Path, Scene, Report], People | Boxes]] = {
+    "wildtrack": read_wildtrack,
+    "text": read_text,
+    "mot": read_mot_files,
+    "coco": read_coco_files,
+    "csv": read_csv_metres,
+}
+
+
+def _people_of(frames: Sequence[FrameAnnotations], paths: list[Path], scene: Scene) -> People:
+    offset, usual = scene.dataset.annotation_offset, scene.dataset.cylinder
+    rows: list[tuple[int, int, int, int, int]] = []
+    sizes: list[tuple[float, float]] = []
+    for file, frame in enumerate(frames):
+        for entry, person in enumerate(frame.people):
+            rows.append((frame.number - offset, person.person, person.position, file, entry))
+            size = cylinder_of(person, usual) if person.extra else usual
+            sizes.append((size.height, size.radius))
+    columns = np.array(rows, dtype=np.int64).reshape(-1, 5).T
+    heights, radii = np.array(sizes, dtype=np.float64).reshape(-1, 2).T
+    return People(
+        frames=columns[0],
+        persons=columns[1],
+        positions=columns[2],
+        heights=np.where(heights == usual.height, np.nan, heights),
+        radii=np.where(radii == usual.radius, np.nan, radii),
+        sources=Sources(paths, columns[3], columns[4], "entry {}"),
+        empty=[frame.number - offset for frame in frames if not frame.people],
+    )
+
+
+def _lines(path: Path, lines: Ids | None) -> Sources:
+    assert lines is not None  # tables that were read know their lines
+    return Sources([path], np.zeros(len(lines), np.int64), lines, "line {}")
+
+
+def _mot_views(folder: Path) -> dict[str, Path]:
+    """Files by the name of their view: VIEW/gt/gt.txt, VIEW/det/det.txt, or VIEW.txt."""
+    found: dict[str, Path] = {}
+    for entry in DatasetFolder(folder, ProblemList(folder)).entries(folder):
+        candidates = [entry / "gt" / "gt.txt", entry / "det" / "det.txt"] if entry.is_dir() else [entry]
+        file = next((each for each in candidates if each.is_file() and each.suffix == ".txt"), None)
+        if file is not None:
+            found.setdefault(entry.name.removesuffix(".txt"), file)
+    return found
+
+
+def _ground(path: Path, table: MotTable, scene: Scene) -> People:
+    if table.world is None:
+        reason = "has boxes, but a file alone must say where people stand; give the folder of all views"
+        problems = ProblemList(path)
+        problems.add("", reason)
+        problems.raise_if_any()
+    assert table.world is not None
+    positions = scene.grid.position(table.world[:, :2])
+    frames = _frame_numbers(table.frames, scene.numbers)
+    return people(frames, table.persons, positions, _lines(path, table.lines))
+
+
+def _frame_numbers(places: Ids, numbers: Sequence[int]) -> Ids:
+    """Frame numbers of places counted from 1; less than 0 where the dataset has no such frame."""
+    known = np.array([0, *numbers], dtype=np.int64)
+    inside = places < len(known)
+    return np.where(inside, known[np.where(inside, places, 0)], -places)
+
+
+def _boxes_of_mot(tables: Sequence[tuple[Path, str, MotTable]], scene: Scene) -> Boxes:
+    parts = []
+    for file, (_path, name, table) in enumerate(tables):
+        assert table.boxes is not None and table.lines is not None
+        # A confidence of 0 marks what the benchmark itself leaves out.
+        counted = (table.confidences != 0) & ~np.isnan(table.boxes[:, 0])
+        count = int(counted.sum())
+        persons = np.full(count, NOBODY) if table.persons is None else table.persons[counted]
+        frames = _frame_numbers(table.frames[counted], scene.numbers)
+        camera = camera_index(name, scene.cameras)
+        ids = [frames, np.full(count, camera), persons, np.full(count, file), table.lines[counted]]
+        parts.append((np.stack(ids), table.boxes[counted]))
+    columns = np.concatenate([each for each, _ in parts], axis=1).astype(np.int64)
+    return Boxes(
+        frames=columns[0],
+        cameras=columns[1],
+        persons=columns[2],
+        positions=np.full(columns.shape[1], NOBODY),
+        boxes=np.concatenate([boxes for _, boxes in parts]),
+        sources=Sources([path for path, _, _ in tables], columns[3], columns[4], "line {}"),
+    )
+
+
+def _boxes_of_coco(files: Iterable[tuple[Path, CocoFile]], scene: Scene, problems: ProblemList) -> Boxes:
+    rows, sides, paths, seen = [], [], [], set()
+    for file, (path, content) in enumerate(files):
+        paths.append(path)
+        views = {image.id: _view(image, path, scene, problems) for image in content.images}
+        seen |= {frame for frame, _ in views.values()}
+        for box in content.boxes:
+            frame, camera = views[box.image]
+            person = NOBODY if box.person is None else box.person
+            position = NOBODY if box.position is None else box.position
+            rows.append((frame, camera, person, position, file, box.id))
+            sides.append(box.box)
+    problems.raise_if_any()
+    columns = np.array(rows, dtype=np.int64).reshape(-1, 6).T
+    return Boxes(
+        frames=columns[0],
+        cameras=columns[1],
+        persons=columns[2],
+        positions=columns[3],
+        boxes=np.array(sides, dtype=np.float64).reshape(-1, 4),
+        sources=Sources(paths, columns[4], columns[5], "annotation {}"),
+        empty=sorted(seen - set(columns[0].tolist())),
+    )
+
+
+def _view(image: CocoImage, path: Path, scene: Scene, problems: ProblemList) -> tuple[int, int]:
+    """Frame number and camera of an image: by the project's own keys, else by names of folders and files."""
+    name = Path(image.file_name)
+    frame = image.frame
+    if frame is None:
+        match = _NUMBER.search(name.stem)
+        if match is None:
+            problems.add(f"image {image.id}", "neither frame nor file_name tells the frame's number", path)
+        frame = int(match[1]) if match else 0
+    if image.camera is not None:
+        return frame, image.camera if image.camera < len(scene.cameras) else NOBODY
+    indices = (camera_index(each, scene.cameras) for each in (name.parent.name, path.stem))
+    return frame, next((index for index in indices if index != NOBODY), NOBODY)
+
+
+def camera_index(name: str, cameras: Sequence[str]) -> int:
+    """By name, also behind the name of a sequence (`street-C1`); NOBODY if there is none."""
+    for index, camera in enumerate(cameras):
+        if name == camera or re.search(rf"[-_.]{re.escape(camera)}$", name):
+            return index
+    return NOBODY
