@@ -9,10 +9,12 @@ from celery.signals import worker_ready
 from django.utils import timezone
 
 from gtm_hit.models import Job
-from gtm_hit.ops import assignments, exporting, jobs
+from gtm_hit.ops import assignments, exporting, import_jobs, jobs, uploads
 
 OPERATIONS: dict[str, jobs.Operation] = {
     Job.Kind.EXPORT_LAYER: exporting.run,
+    Job.Kind.IMPORT_DATASET: import_jobs.run_import,
+    Job.Kind.IMPORT_VIDEOS: import_jobs.run_videos,
 }
 
 
@@ -25,6 +27,7 @@ def run_job(job_id: int) -> None:
 def requeue_lost_jobs() -> None:
     jobs.requeue_lost(timezone.now())
     exporting.remove_dead_partials()
+    uploads.remove_leftovers()
 
 
 @shared_task

@@ -68,20 +68,22 @@ def _load(path: Path, wants_original: Callable[[Any], bool]) -> list[Camera]:
 
 def save_cameras(path: Path, cameras: Sequence[Camera]) -> None:
     """Write cameras so that `load_cameras` gives the same numbers back."""
-    entries = [
-        {
-            "name": camera.name,
-            "width": camera.width,
-            "height": camera.height,
-            "matrix": camera.matrix.tolist(),
-            "rvec": camera.rvec.tolist(),
-            "tvec": camera.tvec.tolist(),
-            "distortion": camera.distortion.tolist(),
-        }
-        for camera in cameras
-    ]
+    entries = [camera_facts(camera) for camera in cameras]
     text = json.dumps({"format": FORMAT, "version": VERSION, "cameras": entries}, indent=2)
     write_bytes(path, text.encode() + b"\n")
+
+
+def camera_facts(camera: Camera) -> dict[str, Any]:
+    """One entry of the file; with an index, the arguments of `Camera` again."""
+    return {
+        "name": camera.name,
+        "width": camera.width,
+        "height": camera.height,
+        "matrix": camera.matrix.tolist(),
+        "rvec": camera.rvec.tolist(),
+        "tvec": camera.tvec.tolist(),
+        "distortion": camera.distortion.tolist(),
+    }
 
 
 def _entries(path: Path) -> list[Any]:
