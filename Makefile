@@ -44,7 +44,7 @@ static-check: $(DEV_ENVIRONMENT) ## every module import and asset resolves under
 check: lint types migrations-check static-check ## everything .ci/run does before the tests
 
 benchmarks: $(DEV_ENVIRONMENT) ## print the figures of the README's performance table
-	@for file in benchmarks/*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
+	@for file in benchmarks/[a-z]*.py; do echo "== $$file"; $(BIN)/python -m benchmarks.$$(basename $$file .py) || exit 1; done
 
 clean: ## remove the environment and caches; data in var/ stay
 	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis
