@@ -18,6 +18,7 @@ export class Scene {
     this.grid = new Grid(json.grid);
     this.cylinder = json.cylinder;
     this.footRule = json.foot_rule;
+    this._numberStep = smallestStep(json.frames.map(({ number }) => number));
     this._rectangles = new WeakMap();
   }
 
@@ -44,6 +45,11 @@ export class Scene {
   /** Number of views in which the person is visible. */
   seenBy(annotation) {
     return this.rectangles(annotation).filter((one) => one !== null).length;
+  }
+
+  /** When a frame was taken, seconds from number 0. */
+  seconds(number) {
+    return (number / this._numberStep) * this.dataset.seconds_per_frame;
   }
 
   metres(position) {
@@ -73,4 +79,9 @@ export class Scene {
     const row = Math.floor(position / width) + rows;
     return column < 0 || row < 0 || column >= width || row >= height ? null : row * width + column;
   }
+}
+
+/** Frames are numbered in steps; where one is missing the step is a multiple. */
+function smallestStep(numbers) {
+  return Math.min(...numbers.slice(1).map((number, index) => number - numbers[index]), Infinity);
 }

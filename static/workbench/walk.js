@@ -1,12 +1,13 @@
 import { carriedOf } from "./annotation.js";
-import { copyPeople } from "./carry.js";
+import { predictPeople } from "./carry.js";
 import * as commands from "./commands.js";
 import { ask } from "./dialogs.js";
 import { gettext, ngettext } from "./messages.js";
+import { nearestSide } from "./sources.js";
 
 /**
  * Going through the frames. Leaving a frame forwards says it is done; a frame nobody has been to starts with
- * the people of the nearest earlier one, yellow.
+ * the people of the frames beside it, moved on the way they walked, yellow.
  */
 export class Walk {
   constructor({ scene, store, history, saver, images, loader, notices, finish }) {
@@ -53,14 +54,14 @@ export class Walk {
     });
   }
 
-  /** People for a frame of a batch that was never saved and has nobody yet. */
+  /** People for a frame of a batch that was never saved and has nobody yet: from the nearer side, moved on. */
   carryInto(number) {
     const { people, nobody } = this.store.frame(number);
     if (!this.judging || people.size || nobody || this.saver.revision(number) > 0) return;
-    const earlier = this.store.numbers.slice(0, this.store.numbers.indexOf(number)).reverse();
-    const from = earlier.find((one) => this.store.frame(one).loaded && this.store.people(one).size);
-    if (from === undefined) return;
-    this.history.run(commands.bring(this.store, number, copyPeople(this.store.people(from))));
+    const sources = nearestSide(this.store, this.scene, number);
+    if (!sources.length) return;
+    const brought = predictPeople(this.scene.grid, this.scene.seconds(number), sources);
+    this.history.run(commands.bring(this.store, number, brought));
   }
 
   /** Show a frame; whoever calls it has asked what has to be asked. */
@@ -92,7 +93,7 @@ export class Walk {
   async _askAboutCarried(waiting) {
     const answer = await ask({
       title: ngettext("{n} person is still yellow", "{n} people are still yellow", waiting.length),
-      body: gettext("They stand where they stood in the frame before. Have you looked at all of them?"),
+      body: gettext("They stand where the frames beside this one let expect them. Have you looked at all of them?"),
       buttons: [
         { id: "look", label: gettext("Look at the first one"), main: true },
         { id: "validate", label: gettext("All are right: validate and go on") },
