@@ -9,7 +9,6 @@ import io
 import sys
 import time
 from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import Path
 
 from PIL import Image
@@ -52,7 +51,7 @@ def wildtrack() -> Iterable[Source]:
 
 
 def demo_scene() -> Iterable[Source]:
-    scene = replace(read_scene(), frame_count=1)
+    scene = read_scene()
     for camera in load_cameras(CAMERAS):
         stream = io.BytesIO()
         Image.fromarray(make_demo_frame(scene, camera, 0)).save(stream, "JPEG", quality=92)

@@ -12,7 +12,7 @@ import numpy as np
 from django.conf import settings
 
 from gtm_hit.demo.render import Truth, render_scene
-from gtm_hit.demo.scene import Scene, read_scene
+from gtm_hit.demo.scene import Scene, SceneError, read_scene
 from gtm_hit.formats.calibration_xml import Extrinsic, Intrinsic, Style, extrinsic_xml, intrinsic_xml
 from gtm_hit.formats.camera_json import load_cameras
 from gtm_hit.formats.files import write_bytes
@@ -70,9 +70,13 @@ def _make(slug: str, scene: Scene, progress: Progress) -> Dataset:
     cameras = load_cameras(CAMERAS)
     with TemporaryDirectory(prefix="demo-scene-") as scratch:
         folder = Path(scratch)
-        truth = render_scene(
-            scene, cameras, folder, lambda done, total: progress("rendering the scene", done, total)
-        )
+        try:
+            truth = render_scene(
+                scene, cameras, folder, lambda done, total: progress("rendering the scene", done, total)
+            )
+        except SceneError as error:
+            hint = "try another seed or another number of frames"
+            raise DemoError(f"{scene.frame_count} frames with seed {scene.seed}: {error}; {hint}") from error
         _write_calibrations(folder, cameras)
         _write_truth(folder, scene, cameras, truth)
         values = SceneValues(

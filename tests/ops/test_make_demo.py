@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from django.core.management import CommandError, call_command
 
+from gtm_hit.demo import walks
 from gtm_hit.demo.render import truth
 from gtm_hit.demo.scene import read_scene
 from gtm_hit.formats.camera_json import load_cameras, save_cameras
@@ -74,4 +75,14 @@ def test_another_dataset_of_that_name_is_left_alone() -> None:
 def test_an_impossible_number_of_frames_is_refused(frames: int) -> None:
     with pytest.raises(CommandError, match="1 to 1000 frames"):
         run(frames=frames)
+    assert not Dataset.objects.exists()
+
+
+def test_a_crowd_that_finds_no_room_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = read_scene()
+    crowded = replace(scene, crowd=replace(scene.crowd, standing_alone=2000))
+    monkeypatch.setattr(demo, "read_scene", lambda: crowded)
+    monkeypatch.setattr(walks, "ATTEMPTS", 20)
+    with pytest.raises(CommandError, match=r"20 frames with seed 7: no room .* try another seed"):
+        run()
     assert not Dataset.objects.exists()
