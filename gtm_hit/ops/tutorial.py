@@ -19,7 +19,8 @@ from gtm_hit.ops.annotations import FrameState
 from gtm_hit.ops.tutorial_exercise import Exercise, NoRoom, Positions, between, make_exercise
 
 FRAMES = 3
-NEAR_ENOUGH = 0.15  # metres
+NEAR_ENOUGH = 0.15 + 1e-6  # metres; six grid steps of 2.5 cm are not quite 0.15
+LARGE = 8  # a person of an eighth of the image's height can be judged without zooming
 
 
 class Step(StrEnum):
@@ -89,7 +90,7 @@ def load() -> Tutorial:
             [frame.number for frame in frames],
             [truth[frame.pk] for frame in frames],
             dataset.grid,
-            lambda places: views_of(dataset, places),
+            lambda places, others: clear_views(dataset, places, others),
         )
     except NoRoom as error:
         raise NoTutorial(str(error)) from error
@@ -109,13 +110,20 @@ def available() -> bool:
     return True
 
 
-def views_of(dataset: Dataset, places: list[int]) -> NDArray[np.int64]:
-    """In how many cameras each position is visible."""
-    visible = [
-        rectangles(camera, dataset.grid, dataset.cylinder, dataset.rule, np.array(places))[1]
-        for camera in dataset.calibrated_cameras()
-    ]
-    return np.sum(visible, axis=0, dtype=np.int64)
+def clear_views(dataset: Dataset, places: list[int], others: list[int]) -> NDArray[np.int64]:
+    """Cameras in which each place's rectangle is large, inside the image, and free of others' rectangles."""
+    here, there = np.array(places), np.array(others)
+    clear = np.zeros(len(places), dtype=np.int64)
+    for camera in dataset.calibrated_cameras():
+        boxes, visible = rectangles(camera, dataset.grid, dataset.cylinder, dataset.rule, here)
+        crowd, seen = rectangles(camera, dataset.grid, dataset.cylinder, dataset.rule, there)
+        low = np.maximum(boxes[:, None, :2], crowd[None, :, :2])
+        high = np.minimum(boxes[:, None, 2:], crowd[None, :, 2:])
+        meets = (low < high).all(axis=2) & seen & (here[:, None] != there)
+        inside = (boxes[:, :2] >= 0).all(axis=1) & (boxes[:, 2:] < (camera.width, camera.height)).all(axis=1)
+        large = boxes[:, 3] - boxes[:, 1] >= camera.height / LARGE
+        clear += visible & inside & large & ~meets.any(axis=1)
+    return clear
 
 
 def check(worker: Worker, step: Step, number: int, annotations: object) -> Verdict:

@@ -17,8 +17,9 @@ SPACING = 0.5  # metres between the places tried for the invented person
 Positions = dict[int, int]
 """Position by person."""
 
-Views = Callable[[list[int]], NDArray[np.int64]]
-"""In how many cameras each position is visible, (N,)."""
+Views = Callable[[list[int], list[int]], NDArray[np.int64]]
+"""In how many cameras somebody at each of the first positions is clearly seen, (N,), when people stand
+at the others."""
 
 
 class NoRoom(ValueError):
@@ -67,30 +68,36 @@ def make_exercise(numbers: list[int], truth: list[Positions], grid: Grid, views:
         missing=missing,
         shifted=shifted,
         shifted_to=beside(shifted, first, grid),
-        invented=max(person for people in truth for person in people) + 1,
+        invented=unused_number(truth),
         invented_at=0,
         carried=walkers(first, second, grid, views)[:2],
     )
     return replace(draft, invented_at=empty_place(first, grid, views))
 
 
+def unused_number(truth: list[Positions]) -> int:
+    """The smallest: the largest number would be the one that catches the eye."""
+    used = {person for people in truth for person in people}
+    return next(number for number in range(1, len(used) + 2) if number not in used)
+
+
 def clearest(people: Positions, grid: Grid, views: Views) -> list[int]:
-    """People easiest to judge first: seen by many cameras, far from everybody else."""
+    """People easiest to judge first: clear in many cameras, far from everybody else."""
     persons = sorted(people)
     places = [people[person] for person in persons]
     apart = between(places, places, grid)
     np.fill_diagonal(apart, np.inf)
     nearest = np.minimum(apart.min(axis=1), 2.0)
-    order = np.lexsort((np.array(persons), -nearest, -views(places)))
+    order = np.lexsort((np.array(persons), -nearest, -views(places, places)))
     return [persons[index] for index in order]
 
 
 def walkers(before: Positions, after: Positions, grid: Grid, views: Views) -> list[int]:
-    """People of both frames, those first whom many cameras see and who moved most."""
+    """People of both frames, those first who are clear in many cameras and moved most."""
     persons = sorted(before.keys() & after.keys())
     places = [after[person] for person in persons]
     moved = np.diag(between([before[person] for person in persons], places, grid))
-    order = np.lexsort((np.array(persons), -moved, -views(places)))
+    order = np.lexsort((np.array(persons), -moved, -views(places, sorted(after.values()))))
     return [persons[index] for index in order]
 
 
@@ -108,18 +115,19 @@ def beside(person: int, people: Positions, grid: Grid) -> int:
 
 
 def empty_place(people: Positions, grid: Grid, views: Views) -> int:
-    """A position amid the people, well seen, with nobody within `LONELY` metres if there is such a place."""
-    points = grid.metres(list(people.values()))
+    """A clear position amid the people, with nobody within `LONELY` metres if there is such a place."""
+    others = sorted(people.values())
+    points = grid.metres(others)
     low, high = points.min(axis=0), points.max(axis=0)
     axes = [np.arange(low[axis], high[axis] + SPACING, SPACING) for axis in (0, 1)]
     tried = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
     candidates = np.unique(grid.nearest(tried))
-    room = between(candidates.tolist(), list(people.values()), grid).min(axis=1)
+    room = between(candidates.tolist(), others, grid).min(axis=1)
     lonely = candidates[room >= LONELY]
     if not len(lonely):
         return int(candidates[np.argmax(room)])
     middle = np.linalg.norm(grid.metres(lonely) - points.mean(axis=0), axis=1)
-    return int(lonely[np.lexsort((middle, -views(lonely.tolist())))[0]])
+    return int(lonely[np.lexsort((middle, -views(lonely.tolist(), others)))[0]])
 
 
 def between(ours: list[int], others: list[int], grid: Grid) -> NDArray[np.float64]:

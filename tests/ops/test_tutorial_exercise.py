@@ -12,7 +12,7 @@ from gtm_hit.ops.tutorial_exercise import LONELY, SHIFT, Exercise, NoRoom, Posit
 GRID = Grid(400, 400, 0.025, -5.0, -5.0)
 
 
-def equally_well(places: list[int]) -> NDArray[np.int64]:
+def equally_well(places: list[int], others: list[int]) -> NDArray[np.int64]:
     return np.full(len(places), 7)
 
 
@@ -80,10 +80,15 @@ def test_the_invented_person_is_alone_where_there_is_room() -> None:
     assert between([made.invented_at], list(corners.values()), GRID).min() >= LONELY
 
 
+def test_the_invented_persons_number_is_not_the_odd_one_out() -> None:
+    people = {1: 0, 2: 399, 4: 159_600, 9: 159_999}
+    assert exercise(people, people, people).invented == 3
+
+
 def test_people_whom_few_cameras_see_are_left_alone() -> None:
     people = {1: 0, 2: 399, 3: 159_600, 4: 159_999, 5: 80_200}
 
-    def but_person_five(places: list[int]) -> NDArray[np.int64]:
+    def but_person_five(places: list[int], others: list[int]) -> NDArray[np.int64]:
         return np.array([0 if place == people[5] else 3 for place in places])
 
     made = make_exercise([0, 5, 10], [people] * 3, GRID, but_person_five)
