@@ -56,11 +56,17 @@ class Rectangles(Protocol):
     def visible(self, camera_index: int) -> np.ndarray: ...
 
 
-def write_pom(path: Path, header: PomHeader, table: Rectangles, progress: Progress | None = None) -> None:
-    """Writes one line per camera and position; `progress` is told positions done and positions in all."""
+def write_pom(
+    path: Path, header: PomHeader, table: Rectangles, progress: Progress | None = None, headed: bool = True
+) -> None:
+    """Writes one line per camera and position; `progress` is told positions done and positions in all.
+
+    With `headed` false the header is left out, as MultiviewX's readers want it.
+    """
     count = header.grid.count
     with replacing(path) as stream:
-        stream.write(header_text(header).encode())
+        if headed:
+            stream.write(header_text(header).encode())
         for camera in range(header.cameras):
             boxes, visible = table.boxes(camera), table.visible(camera)
             if boxes.shape != (count, 4) or visible.shape != (count,):

@@ -14,13 +14,17 @@ UNITS = {FootRule.CORNERS: "cm", FootRule.CENTRE: "m"}
 STYLES = {FootRule.CORNERS: Style.TEXT, FootRule.CENTRE: Style.MATRIX}
 
 
-def calibration_files(cameras: Sequence[Camera], rule: FootRule) -> Iterator[tuple[str, bytes]]:
+def calibration_files(
+    cameras: Sequence[Camera], rule: FootRule, folder: str | None = None
+) -> Iterator[tuple[str, bytes]]:
     """Paths below the export and their bytes: an extrinsic and an intrinsic file for each camera.
 
     The foot rule tells which of the two data sets' readers the export is for: WILDTRACK's take `tvec` in
-    centimetres as bare text, MultiviewX's in metres as matrices.
+    centimetres as bare text, MultiviewX's in metres as matrices. `folder` is that of the intrinsic files;
+    without it the lens decides.
     """
-    folder = "intrinsic" if any(camera.distortion.any() for camera in cameras) else "intrinsic_zero"
+    if folder is None:
+        folder = "intrinsic" if any(camera.distortion.any() for camera in cameras) else "intrinsic_zero"
     for name, camera in zip(published_names(cameras, rule), cameras, strict=True):
         pose = Extrinsic(camera.rvec, camera.tvec).in_unit(UNITS[rule])
         lens = Intrinsic(camera.matrix, camera.distortion)

@@ -2,78 +2,85 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
+from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from gtm_hit.formats.camera_json import save_cameras
-from gtm_hit.formats.manifest import FileEntry, Manifest, write_manifest
+from gtm_hit.formats.manifest import Manifest, write_manifest
 from gtm_hit.geometry.camera import Camera
-from gtm_hit.models import Dataset, Layer
+from gtm_hit.models import Annotation, Dataset, Layer
 from gtm_hit.ops.coverage import table
-from gtm_hit.ops.export_calibrations import UNITS, calibration_files
-from gtm_hit.ops.export_frames import FrameReader
-
-ANNOTATIONS = "annotations_positions"
+from gtm_hit.ops.export_calibrations import UNITS
+from gtm_hit.ops.export_files import ExportFiles
+from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, FORMATS
+from gtm_hit.ops.export_formats.target import Report, Target, Writer
+from gtm_hit.ops.export_frames import Chunk, FrameReader
 
 TABLE = "computing the rectangle table"
 FRAMES = "writing frames"
-Report = Callable[[str, int, int], None]  # the phase in words, steps done, steps in all
 
 
 class ExportFolder:
-    """Fills one empty folder with one layer."""
+    """Fills one empty folder with one layer in the chosen formats; `more` are further writers."""
 
-    def __init__(self, folder: Path, layer: Layer, report: Report) -> None:
-        self.folder = folder
+    def __init__(
+        self,
+        folder: Path,
+        layer: Layer,
+        report: Report,
+        formats: Collection[str] = DEFAULT_FORMATS,
+        more: Sequence[Callable[[Target], Writer]] = (),
+    ) -> None:
         self.layer = layer
         self.dataset: Dataset = layer.dataset
         self.report = report
-        self.files: dict[str, FileEntry] = {}
+        self.formats = list(formats)
+        self.writers = [*(FORMATS[name].writer for name in formats), *more]
+        self.files = ExportFiles(folder)
         self.frames = self.annotations = self.not_validated = 0
         self.persons: set[int] = set()
 
     def write(self) -> Manifest:
-        cameras = self.dataset.calibrated_cameras()
-        self._write_frames(cameras)
-        for name, data in calibration_files(cameras, self.dataset.rule):
-            self._write(name, data)
-        self._write_cameras(cameras)
-        self._write("README.txt", self._readme().encode())
-        manifest = Manifest(self._counts(cameras), self._parameters(), self.files)
-        write_manifest(self.folder, manifest)
+        self.write_layer()
+        self.files.write("README.txt", self.readme().encode())
+        return self.seal()
+
+    def write_layer(self) -> None:
+        """Everything the formats hold."""
+        self.cameras = self.dataset.calibrated_cameras()
+        rectangles = table(self.dataset, lambda done, total: self.report(TABLE, done, total))
+        with ExitStack() as open_files:
+            target = Target(self.files, self.layer, self.cameras, rectangles, self.report, open_files)
+            writers = [make(target) for make in self.writers]
+            reader = FrameReader(self.layer, self.dataset, self.cameras, rectangles)
+            total = reader.count()
+            for chunk in reader:
+                self._add(chunk, writers, total)
+            for writer in writers:
+                writer.finish()
+        save_cameras(self.files.path("cameras.json"), self.cameras)
+        self.files.note("cameras.json")
+
+    def seal(self, **parameters: Any) -> Manifest:
+        """The manifest of what was written so far; the last file."""
+        manifest = Manifest(
+            self._counts(self.cameras), {**self._parameters(), **parameters}, self.files.entries
+        )
+        write_manifest(self.files.folder, manifest)
         return manifest
 
-    def _write_frames(self, cameras: list[Camera]) -> None:
-        rectangles = table(self.dataset, lambda done, total: self.report(TABLE, done, total))
-        reader = FrameReader(self.layer, self.dataset, cameras, rectangles)
-        total = reader.count()
-        (self.folder / ANNOTATIONS).mkdir()
-        for frame in reader:
-            self._write(f"{ANNOTATIONS}/{self.dataset.annotation_name(frame.number)}", frame.json)
-            self.persons.update(frame.persons)
-            self.annotations += len(frame.persons)
-            self.not_validated += frame.not_validated
-            self.frames += 1
-            # A save that arrives meanwhile may add a frame that was not counted.
-            self.report(FRAMES, self.frames, max(total, self.frames))
-
-    def _write_cameras(self, cameras: list[Camera]) -> None:
-        path = self.folder / "cameras.json"
-        save_cameras(path, cameras)
-        self._note(path.name, path.read_bytes())
-
-    def _write(self, name: str, data: bytes) -> None:
-        path = self.folder / name
-        if name not in self.files:
-            path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(data)
-        self._note(name, data)
-
-    def _note(self, name: str, data: bytes) -> None:
-        self.files[name] = FileEntry(len(data), hashlib.sha256(data).hexdigest())
+    def _add(self, chunk: Chunk, writers: list[Writer], total: int) -> None:
+        for writer in writers:
+            writer.add(chunk)
+        self.persons.update(chunk.persons.tolist())
+        self.annotations += len(chunk.persons)
+        self.not_validated += sum(state != Annotation.State.VALIDATED for state in chunk.states)
+        self.frames += len(chunk.numbers)
+        # A save that arrives meanwhile may add a frame that was not counted.
+        self.report(FRAMES, self.frames, max(total, self.frames))
 
     def _counts(self, cameras: list[Camera]) -> dict[str, int]:
         return {
@@ -91,6 +98,7 @@ class ExportFolder:
             "dataset_name": dataset.name,
             "layer": self.layer.name,
             "layer_kind": self.layer.kind,
+            "formats": self.formats,
             "grid": asdict(dataset.grid),
             "cylinder": asdict(dataset.cylinder),
             "foot_rule": dataset.rule.value,
@@ -101,41 +109,32 @@ class ExportFolder:
             "calibration_tvec_unit": UNITS[dataset.rule],
         }
 
-    def _readme(self) -> str:
+    def readme(self) -> str:
         grid, cylinder = self.dataset.grid, self.dataset.cylinder
-        return README.format(
-            dataset=self.dataset.name,
-            layer=self.layer.name,
-            columns=grid.columns,
-            rows=grid.rows,
-            step=grid.step,
-            origin_x=grid.origin_x,
-            origin_y=grid.origin_y,
-            radius=cylinder.radius,
-            height=cylinder.height,
-            unit={"cm": "centimetres", "m": "metres"}[UNITS[self.dataset.rule]],
-            offset=self.dataset.annotation_offset,
-            annotations=ANNOTATIONS,
-        )
+        values = {
+            "dataset": self.dataset.name,
+            "layer": self.layer.name,
+            "columns": grid.columns,
+            "rows": grid.rows,
+            "step": grid.step,
+            "origin_x": grid.origin_x,
+            "origin_y": grid.origin_y,
+            "radius": cylinder.radius,
+            "height": cylinder.height,
+            "unit": {"cm": "centimetres", "m": "metres"}[UNITS[self.dataset.rule]],
+            "offset": self.dataset.annotation_offset,
+        }
+        parts = [FORMATS[name].readme.format(**values) for name in self.formats]
+        return README.format(**values, formats="\n".join(parts))
 
 
 README = """\
 {dataset}: layer {layer}
 
-{annotations}/   one JSON file per frame: a list of people, each with
-    personID      the same person has the same number in all frames
-    positionID    row * {columns} + column on the ground grid
-    views         one rectangle per camera in pixels, all four -1 where the person is not visible
-    x, y          the same position in metres
-    height, radius  of this person in metres, where they are not the usual ones
-    origin        how the position came about
-    validated     false where nobody confirmed a position that was carried over
-  The number in a file name is the frame number plus {offset}.
-
+{formats}
 Grid: {columns} x {rows} positions, {step} m apart, the first at ({origin_x}, {origin_y}) m.
 A person is a cylinder of {radius} m radius and {height} m height standing on a position.
 
-calibrations/   OpenCV XML per camera; tvec in {unit}
-cameras.json    the same numbers in one file; tvec in metres
+cameras.json    the calibration; tvec in metres
 manifest.json   counts, parameters, and the SHA-256 of every file
 """

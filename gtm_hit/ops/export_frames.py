@@ -1,16 +1,14 @@
-"""A layer's frames as JSON, read in chunks: memory and queries stay bounded however long the layer is."""
+"""A layer's frames, read in chunks: memory and queries stay bounded however long the layer is."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import groupby
-from operator import itemgetter
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from gtm_hit.formats.wildtrack_json import PersonPosition, frame_json
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Annotation, Dataset, Layer, LayerFrame
@@ -19,16 +17,32 @@ from gtm_hit.ops.rectangles import annotation_rectangles
 FRAMES_PER_CHUNK = 250
 METRE_DIGITS = 6  # micrometres: enough to hide the last bits of floating point, not a position
 
-# frame id, person, position, height, radius, state, origin
-Row = tuple[int, int, int, float | None, float | None, str, str]
+Ids = NDArray[np.int64]
+Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class ExportedFrame:
-    number: int
-    persons: list[int]
-    not_validated: int
-    json: bytes
+@dataclass(frozen=True, eq=False)
+class Chunk:
+    """Consecutive frames of a layer with everybody in them, by frame number and person."""
+
+    numbers: list[int]  # of all frames, also of those with nobody
+    frames: Ids  # (N,) frame number of each annotation
+    persons: Ids  # (N,)
+    positions: Ids  # (N,)
+    xy: Floats  # (N, 2) metres
+    heights: Floats  # (N,) metres, NaN for the dataset's cylinder
+    radii: Floats  # (N,) likewise
+    states: list[str]
+    origins: list[str]
+    boxes: NDArray[np.int16]  # (N, C, 4) pixels
+    visible: NDArray[np.bool_]  # (N, C)
+
+    def by_frame(self) -> Iterator[tuple[int, slice]]:
+        """Every frame's number, and which rows are in it."""
+        starts = np.searchsorted(self.frames, self.numbers, side="left").tolist()
+        ends = np.searchsorted(self.frames, self.numbers, side="right").tolist()
+        for number, start, end in zip(self.numbers, starts, ends, strict=True):
+            yield number, slice(start, end)
 
 
 class FrameReader:
@@ -43,7 +57,7 @@ class FrameReader:
     def count(self) -> int:
         return self._saved().count()
 
-    def __iter__(self) -> Iterator[ExportedFrame]:
+    def __iter__(self) -> Iterator[Chunk]:
         after = -1
         while frames := list(
             self._saved()
@@ -51,51 +65,36 @@ class FrameReader:
             .order_by("frame__number")
             .values_list("frame_id", "frame__number")[:FRAMES_PER_CHUNK]
         ):
-            yield from self._chunk(frames)
+            yield self._chunk(dict(frames))
             after = frames[-1][1]
 
     def _saved(self) -> Any:
         return LayerFrame.objects.filter(layer=self.layer, revision__gte=1)
 
-    def _chunk(self, frames: list[tuple[int, int]]) -> Iterator[ExportedFrame]:
-        rows: list[Row] = list(
-            Annotation.objects.filter(layer=self.layer, frame__in=[frame for frame, _ in frames])
-            .order_by("frame_id", "person")
+    def _chunk(self, numbers: dict[int, int]) -> Chunk:
+        rows = list(
+            Annotation.objects.filter(layer=self.layer, frame__in=list(numbers))
+            .order_by()
             .values_list("frame_id", "person", "position", "height", "radius", "state", "origin")
         )
-        placed = zip(rows, self._people(rows), strict=True)
-        people = {frame: list(together) for frame, together in groupby(placed, key=lambda pair: pair[0][0])}
-        for frame, number in frames:
-            present = people.get(frame, [])
-            yield ExportedFrame(
-                number,
-                [row[1] for row, _ in present],
-                sum(row[5] != Annotation.State.VALIDATED for row, _ in present),
-                frame_json(map(itemgetter(1), present), len(self.cameras)),
-            )
-
-    def _people(self, rows: list[Row]) -> Iterator[PersonPosition]:
-        positions = np.array([row[2] for row in rows], dtype=np.int64)
+        rows.sort(key=lambda row: (numbers[row[0]], row[1]))
+        columns: list[Any] = list(zip(*rows, strict=True)) or [()] * 7
+        positions = np.array(columns[2], dtype=np.int64)
         # None becomes NaN: the dataset's own cylinder.
-        heights, radii = (np.array([row[column] for row in rows], dtype=np.float64) for column in (3, 4))
+        heights, radii = (np.array(column, dtype=np.float64) for column in columns[3:5])
         boxes, visible = annotation_rectangles(
             self.dataset, self.cameras, self.table, positions, heights, radii
         )
-        shown = np.where(visible[:, :, None], boxes, np.int16(-1))
-        metres = self.dataset.grid.metres(positions).round(METRE_DIGITS).tolist()
-        for row, box, (x, y) in zip(rows, shown, metres, strict=True):
-            yield PersonPosition(row[1], row[2], box, extra(row, x, y))
-
-
-def extra(row: Row, x: float, y: float) -> dict[str, Any]:
-    """What follows the published keys of a person: metres, an own size, where the position came from."""
-    _, _, _, height, radius, state, origin = row
-    keys: dict[str, Any] = {"x": x, "y": y}
-    if height is not None:
-        keys["height"] = height
-    if radius is not None:
-        keys["radius"] = radius
-    keys["origin"] = origin
-    if state != Annotation.State.VALIDATED:
-        keys["validated"] = False
-    return keys
+        return Chunk(
+            numbers=sorted(numbers.values()),
+            frames=np.array([numbers[frame] for frame in columns[0]], dtype=np.int64),
+            persons=np.array(columns[1], dtype=np.int64),
+            positions=positions,
+            xy=self.dataset.grid.metres(positions).round(METRE_DIGITS),
+            heights=heights,
+            radii=radii,
+            states=list(columns[5]),
+            origins=list(columns[6]),
+            boxes=boxes,
+            visible=visible,
+        )

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import re
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,11 +22,13 @@ from gtm_hit.formats.problems import FormatError
 from gtm_hit.formats.stable_zip import write_folder_zip
 from gtm_hit.models import Job, Layer
 from gtm_hit.ops import jobs
-from gtm_hit.ops.export_folder import FRAMES, TABLE, ExportFolder, Report
+from gtm_hit.ops.export_folder import FRAMES, TABLE, ExportFolder
+from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, chosen
+from gtm_hit.ops.export_formats.target import RECTANGLES, Report
 
 PACKING = "packing files"
 # Percents of the whole at which each phase begins and ends.
-SHARES = {TABLE: (0, 5), FRAMES: (5, 60), PACKING: (60, 100)}
+SHARES = {TABLE: (0, 5), FRAMES: (5, 50), RECTANGLES: (50, 60), PACKING: (60, 100)}
 PARTIAL = re.compile(r".+\.partial-(?P<job>\d+)-(?P<attempt>\d+)")
 
 
@@ -48,9 +50,9 @@ class Export:
         return self.archive.stat().st_size
 
 
-def start(layer: Layer, user: User | None = None) -> Job:
-    """Queue the export of a layer; the one under way when there is one."""
-    parameters = {"layer": layer.name, "layer_id": layer.pk}
+def start(layer: Layer, user: User | None = None, formats: Collection[str] = DEFAULT_FORMATS) -> Job:
+    """Queue the export of a layer; the one under way when there is one. ValueError for unknown formats."""
+    parameters = {"layer": layer.name, "layer_id": layer.pk, "formats": chosen(formats)}
     return jobs.create_once(Job.Kind.EXPORT_LAYER, layer.dataset, parameters, user)
 
 
@@ -62,12 +64,14 @@ def run(mine: jobs.Run) -> dict[str, Any]:
     folder = settings.EXPORTS_ROOT / f"{layer.dataset.slug}-{layer.name}-{mine.job.pk}"
     partial = folder.with_name(f"{folder.name}.partial-{mine.job.pk}-{mine.attempt}")
 
-    def report(phase: str, done: int, total: int) -> None:
-        start, end = SHARES[phase]
-        steps = start + (end - start) * done // max(total, 1)
-        mine.report(steps, 100, f"{phase}: {done} of {total}")
-
-    manifest = export_layer(layer, folder, partial, report, lambda: mine.confirm(100, 100))
+    manifest = export_layer(
+        layer,
+        folder,
+        partial,
+        shared_report(mine, SHARES),
+        lambda: mine.confirm(100, 100),
+        mine.job.parameters.get("formats", DEFAULT_FORMATS),
+    )
     return {
         "folder": folder.name,
         "archive_name": f"{archive_root(layer)}.zip",
@@ -76,8 +80,24 @@ def run(mine: jobs.Run) -> dict[str, Any]:
     }
 
 
+def shared_report(mine: jobs.Run, shares: Mapping[str, tuple[int, int]]) -> Report:
+    """Tells the job's row phases and steps as percents of the whole."""
+
+    def report(phase: str, done: int, total: int) -> None:
+        start, end = shares[phase]
+        steps = start + (end - start) * done // max(total, 1)
+        mine.report(steps, 100, f"{phase}: {done} of {total}")
+
+    return report
+
+
 def export_layer(
-    layer: Layer, folder: Path, partial: Path, report: Report, confirm: Callable[[], None] | None = None
+    layer: Layer,
+    folder: Path,
+    partial: Path,
+    report: Report,
+    confirm: Callable[[], None] | None = None,
+    formats: Collection[str] = DEFAULT_FORMATS,
 ) -> Manifest:
     """Write a layer to `folder` and to the zip beside it, replacing an earlier export there.
 
@@ -87,7 +107,7 @@ def export_layer(
     with empty_folder(partial):
         content, archive = partial / "content", partial / "content.zip"
         content.mkdir()
-        manifest = ExportFolder(content, layer, report).write()
+        manifest = ExportFolder(content, layer, report, chosen(formats)).write()
         if not manifest.counts["frames"]:
             raise ExportError(f"Nothing has been saved in the layer {layer.name} yet.")
         write_folder_zip(

@@ -239,9 +239,9 @@ def test_a_long_layer_is_read_in_chunks_with_two_queries_each(
         save(layer, number, [(1, MIDDLE + number, {})])
     reader = export_frames.FrameReader(layer, dataset, dataset.calibrated_cameras(), table(dataset))
     with django_assert_num_queries(5):
-        frames = list(reader)
-    assert [frame.number for frame in frames] == [0, 5, 10]
-    assert [json.loads(frame.json)[0]["positionID"] for frame in frames] == [MIDDLE, MIDDLE + 5, MIDDLE + 10]
+        chunks = list(reader)
+    assert [chunk.numbers for chunk in chunks] == [[0, 5], [10]]
+    assert [chunk.positions.tolist() for chunk in chunks] == [[MIDDLE, MIDDLE + 5], [MIDDLE + 10]]
 
 
 def test_nothing_is_left_when_it_fails(layer: Layer, tmp_path: Path) -> None:
