@@ -10,11 +10,13 @@ from django.utils import timezone
 
 from gtm_hit.models import Job
 from gtm_hit.ops import assignments, exporting, import_jobs, jobs, uploads
+from gtm_hit.ops.calibration import job as calibration_job
 
 OPERATIONS: dict[str, jobs.Operation] = {
     Job.Kind.EXPORT_LAYER: exporting.run,
     Job.Kind.IMPORT_DATASET: import_jobs.run_import,
     Job.Kind.IMPORT_VIDEOS: import_jobs.run_videos,
+    Job.Kind.REPLACE_CALIBRATION: calibration_job.run,
 }
 
 

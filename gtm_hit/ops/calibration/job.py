@@ -1,0 +1,55 @@
+"""The change of calibration as a job: it compares, and waits for somebody to confirm."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from django.contrib.auth.models import User
+from django.db import transaction
+from django.utils import timezone
+
+from gtm_hit.formats.camera_json import camera_facts
+from gtm_hit.geometry.camera import Camera
+from gtm_hit.models import Dataset, Job
+from gtm_hit.ops import jobs
+from gtm_hit.ops.calibration import replacing
+from gtm_hit.ops.calibration.replacing import ReplacementError
+
+# Percents of the whole at which each phase begins and ends.
+SHARES = {replacing.RECTANGLES: (0, 60), replacing.COMPARING: (60, 100)}
+
+
+def start(dataset: Dataset, cameras: Sequence[Camera], user: User | None = None) -> Job:
+    """The numbers go into the job's row: no file has to outlive the request."""
+    parameters = {"cameras": [camera_facts(camera) for camera in cameras]}
+    return jobs.create_once(Job.Kind.REPLACE_CALIBRATION, dataset, parameters, user)
+
+
+def run(mine: jobs.Run) -> dict[str, Any]:
+    def report(phase: str, done: int, total: int) -> None:
+        first, last = SHARES[phase]
+        mine.report(first + (last - first) * done // max(total, 1), 100, f"{phase}: {done} of {total}")
+
+    assert mine.job.dataset is not None
+    return replacing.preview(mine.job.dataset, cameras_of(mine.job), report)
+
+
+def confirm(job: Job, user: User | None = None) -> None:
+    """Put a finished job's cameras in place, once. Raises ReplacementError."""
+    with transaction.atomic():
+        # Dataset before job, as everywhere.
+        Dataset.objects.select_for_update().filter(jobs=job).first()
+        job = Job.objects.select_for_update().get(pk=job.pk)
+        if job.kind != Job.Kind.REPLACE_CALIBRATION or job.state != Job.State.DONE or job.dataset is None:
+            raise ReplacementError("There is no finished comparison to confirm.")
+        if "confirmed_at" in job.result:
+            raise ReplacementError("This calibration was put in place before.")
+        replacing.replace_calibration(job.dataset, cameras_of(job), job.result)
+        confirmed = {"confirmed_at": timezone.now().isoformat(), "confirmed_by": str(user or "")}
+        job.result = {**job.result, **confirmed}
+        job.save(update_fields=["result"])
+
+
+def cameras_of(job: Job) -> list[Camera]:
+    return [Camera(index=index, **facts) for index, facts in enumerate(job.parameters["cameras"])]

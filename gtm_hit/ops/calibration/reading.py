@@ -1,0 +1,47 @@
+"""A calibration that is to replace a dataset's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from gtm_hit.formats.calibration_files import CAMERAS_JSON, CalibrationFiles, find_calibrations
+from gtm_hit.formats.dataset_folder import DatasetFolder
+from gtm_hit.formats.problems import ProblemList
+from gtm_hit.geometry.camera import Camera
+from gtm_hit.models import Dataset
+from gtm_hit.ops.importing.calibrations import tell_wrong_unit, views_of
+
+
+def read_replacement(dataset: Dataset, path: Path, unit: str = "m") -> list[Camera]:
+    """The cameras of a `cameras.json`, or of a folder like `calibrations/` or one that holds that.
+
+    They are those of the dataset by name and size. Raises FormatError with everything that is wrong, its
+    paths seen from `path`.
+    """
+    problems = ProblemList(path)
+    names = list(dataset.cameras.values_list("name", flat=True))
+    sizes = {
+        name: (width, height)
+        for name, width, height in dataset.cameras.values_list("name", "width", "height")
+    }
+    files = _files(path, names, problems)
+    views = views_of(files, names, sizes, unit, undistort=False, problems=problems)
+    cameras = [view.camera for view in views]
+    for camera in cameras:
+        if dataset.undistorted and camera.distortion.any():
+            problems.add(
+                f"camera {camera.name}",
+                "has lens distortion, but the lens was taken out of this dataset's images: "
+                "give the calibration of undistorted images",
+            )
+    if len(cameras) == len(names):
+        tell_wrong_unit(cameras, dataset.grid, unit, problems)
+    problems.raise_if_any()
+    return cameras
+
+
+def _files(path: Path, names: list[str], problems: ProblemList) -> CalibrationFiles:
+    inner = path / "calibrations"
+    if path.is_dir() and inner.is_dir() and not (path / CAMERAS_JSON).exists():
+        path = inner
+    return find_calibrations(DatasetFolder(path.parent, problems), names, Path(path.name))

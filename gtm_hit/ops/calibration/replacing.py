@@ -1,0 +1,161 @@
+"""Looking at what a new calibration would change, and changing it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from django.conf import settings
+from django.db import transaction
+from django.db.models import Count, Max
+
+from gtm_hit.geometry.camera import Camera
+from gtm_hit.geometry.cylinder import Cylinder
+from gtm_hit.geometry.table import RectangleTable, table_digest
+from gtm_hit.models import Annotation, Dataset, Image, Layer, Save
+from gtm_hit.ops.calibration.comparison import Calibration, Comparison, Moved, Person
+
+PEOPLE_TOGETHER = 20_000
+RECTANGLES, COMPARING = "computing rectangles", "comparing boxes"
+LATTICE = 7  # positions along each side that stand in for people where nobody is annotated
+
+Progress = Callable[[str, int, int], None]
+
+
+class ReplacementError(ValueError):
+    """The calibration cannot be put in place now; says why."""
+
+
+def preview(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> dict[str, Any]:
+    """What putting `cameras` in place would do to every box, as JSON values. Builds the new table.
+
+    Positions of annotations stay as they are; nothing is written.
+    """
+    state = state_of(dataset)
+    comparison = Comparison(
+        _calibration(dataset, dataset.calibrated_cameras(), progress),
+        _calibration(dataset, cameras, progress),
+    )
+    total = Annotation.objects.filter(layer__dataset=dataset).count()
+    people = _people(dataset)
+    progress(COMPARING, 0, total)
+    while block := list(islice(people, PEOPLE_TOGETHER)):
+        comparison.add(block)
+        # Somebody may annotate meanwhile; the state tells, the bar need not.
+        progress(COMPARING, min(comparison.people, total), total)
+    return {
+        "state": state,
+        "table_digest": comparison.after.table.digest,
+        "annotations": comparison.people,
+        "cameras": comparison.cameras(),
+        "worst": [_worst(moved) for moved in comparison.worst],
+        "picture": _picture(dataset, comparison),
+    }
+
+
+def replace_calibration(dataset: Dataset, cameras: Sequence[Camera], seen: dict[str, Any]) -> None:
+    """Put the cameras of a preview in place.
+
+    Raises ReplacementError when annotations or calibration are not what they were for the preview `seen`.
+    """
+    with transaction.atomic():
+        dataset = Dataset.objects.select_for_update().get(pk=dataset.pk)
+        if state_of(dataset) != seen["state"]:
+            raise ReplacementError(
+                "Annotations or calibration have changed since these boxes were compared. Compare again."
+            )
+        for row, camera in zip(dataset.cameras.select_for_update(), cameras, strict=True):
+            row.matrix, row.distortion = camera.matrix.tolist(), camera.distortion.tolist()
+            row.rvec, row.tvec = camera.rvec.tolist(), camera.tvec.tolist()
+            row.save(update_fields=["matrix", "distortion", "rvec", "tvec"])
+        dataset.table_digest = seen["table_digest"]
+        dataset.save(update_fields=["table_digest"])
+
+
+def state_of(dataset: Dataset) -> list[Any]:
+    """Changes with every save, every layer removed, and every change of cameras, grid or cylinder."""
+    digest = table_digest(dataset.calibrated_cameras(), dataset.grid, dataset.cylinder, dataset.rule)
+    saves = Save.objects.filter(layer_frame__layer__dataset=dataset).aggregate(Count("pk"), Max("pk"))
+    people = Annotation.objects.filter(layer__dataset=dataset).aggregate(Count("pk"), Max("pk"))
+    return [digest, *saves.values(), *people.values()]
+
+
+def _calibration(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> Calibration:
+    table = RectangleTable.build(
+        Path(settings.TABLES_ROOT),
+        cameras,
+        dataset.grid,
+        dataset.cylinder,
+        dataset.rule,
+        lambda done, total: progress(RECTANGLES, done, total),
+    )
+    return Calibration(cameras, table, dataset.cylinder, dataset.rule)
+
+
+def _people(dataset: Dataset, **chosen: Any) -> Iterator[Person]:
+    usual = dataset.cylinder
+    rows = Annotation.objects.filter(layer__dataset=dataset, **chosen).order_by("pk")
+    fields = ("layer__name", "frame__number", "person", "position", "radius", "height")
+    for layer, frame, person, position, radius, height in rows.values_list(*fields).iterator(PEOPLE_TOGETHER):
+        size = usual if radius is height is None else Cylinder(radius or usual.radius, height or usual.height)
+        yield Person(layer, frame, person, position, size)
+
+
+def _worst(moved: Moved) -> dict[str, Any]:
+    person = moved.person
+    return {
+        "shift": moved.shift,
+        "layer": person.layer,
+        "frame": person.frame,
+        "person": person.person,
+        "camera": moved.camera,
+        "before": moved.before,
+        "after": moved.after,
+    }
+
+
+def _picture(dataset: Dataset, comparison: Comparison) -> dict[str, Any]:
+    """The fullest frame of any layer, its boxes before and after; a lattice where nobody is annotated."""
+    fullest = (
+        Annotation.objects.filter(layer__dataset=dataset)
+        .values("layer", "frame")
+        .annotate(people=Count("pk"))
+        .order_by("-people", "frame__number")
+        .first()
+    )
+    if fullest is None:
+        frame, layer, people = dataset.frames.first(), None, _lattice(dataset)
+    else:
+        frame = dataset.frames.get(pk=fullest["frame"])
+        layer = Layer.objects.get(pk=fullest["layer"]).name
+        people = list(_people(dataset, layer=fullest["layer"], frame=frame))
+    images = Image.objects.filter(frame=frame).order_by("camera__index")
+    return {
+        "frame": frame.number if frame else None,
+        "layer": layer,
+        "images": list(images.values_list("light_digest", flat=True)),
+        "before": _drawn(*comparison.before.boxes(people)),
+        "after": _drawn(*comparison.after.boxes(people)),
+    }
+
+
+def _lattice(dataset: Dataset) -> list[Person]:
+    grid = dataset.grid
+    return [
+        Person(
+            "",
+            0,
+            0,
+            row * grid.rows // LATTICE * grid.columns + column * grid.columns // LATTICE,
+            dataset.cylinder,
+        )
+        for row in range(LATTICE)
+        for column in range(LATTICE)
+    ]
+
+
+def _drawn(boxes: Any, visible: Any) -> list[list[list[int]]]:
+    """Per camera the boxes that are visible."""
+    return [boxes[visible[:, camera], camera].tolist() for camera in range(boxes.shape[1])]
