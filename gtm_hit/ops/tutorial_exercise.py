@@ -13,6 +13,7 @@ from gtm_hit.geometry.grid import Grid
 SHIFT = 0.40  # metres the misplaced person stands off
 LONELY = 1.0  # metres around the invented person where nobody is
 SPACING = 0.5  # metres between the places tried for the invented person
+LOOKED_AT = 100  # of those places, nearest the middle: projecting all takes ten times as long
 
 Positions = dict[int, int]
 """Position by person."""
@@ -126,8 +127,9 @@ def empty_place(people: Positions, grid: Grid, views: Views) -> int:
     lonely = candidates[room >= LONELY]
     if not len(lonely):
         return int(candidates[np.argmax(room)])
-    middle = np.linalg.norm(grid.metres(lonely) - points.mean(axis=0), axis=1)
-    return int(lonely[np.lexsort((middle, -views(lonely.tolist(), others)))[0]])
+    from_middle = np.linalg.norm(grid.metres(lonely) - points.mean(axis=0), axis=1)
+    tried_first = lonely[np.argsort(from_middle, kind="stable")[:LOOKED_AT]]
+    return int(tried_first[np.argmax(views(tried_first.tolist(), others))])
 
 
 def between(ours: list[int], others: list[int], grid: Grid) -> NDArray[np.float64]:
