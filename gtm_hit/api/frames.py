@@ -64,6 +64,7 @@ class SceneView(PlacedView):
                 "read_only_reason": assignments.explained(place.read_only_reason),
                 "assignment": scene.assignment_part(place.assignment),
                 "next_person": next_person(place.layer),
+                "neighbours": scene.neighbours_part(place.assignment),
             }
         )
 

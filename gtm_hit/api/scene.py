@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import asdict
 from typing import Any
 
 from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, LayerFrame
+from gtm_hit.ops.neighbours import Neighbours, neighbours
 
 
 def dataset_part(dataset: Dataset) -> dict[str, Any]:
@@ -16,6 +18,7 @@ def dataset_part(dataset: Dataset) -> dict[str, Any]:
             "slug": dataset.slug,
             "name": dataset.name,
             "seconds_per_frame": dataset.seconds_per_frame,
+            "frame_step": dataset.frame_step,
         },
         "grid": {
             "columns": grid.columns,
@@ -74,3 +77,8 @@ def assignment_part(assignment: Assignment | None) -> dict[str, Any] | None:
         "expires_at": assignment.expires_at,
         "batch": str(assignment.batch),
     }
+
+
+def neighbours_part(assignment: Assignment | None) -> dict[str, Any]:
+    """People of accepted work beside the batch, nearest frames first."""
+    return asdict(neighbours(assignment.batch) if assignment else Neighbours())

@@ -170,3 +170,6 @@ class SceneSerializer(serializers.Serializer[Any]):
     read_only_reason = serializers.CharField()
     assignment = serializers.DictField(allow_null=True)
     next_person = serializers.IntegerField(help_text="no save of the layer has used it")
+    neighbours = serializers.DictField(
+        required=False, help_text="before, after: frames of accepted work beside the batch, nearest first"
+    )

@@ -28,6 +28,17 @@ def test_the_scene_describes_what_the_workbench_draws(alice: Caller, assignment:
     assert scene["next_person"] == 1
 
 
+def test_the_scene_brings_accepted_people_from_beyond_the_batchs_border(bob: Caller, alice: Caller) -> None:
+    """Bob has the batch after Alice's."""
+    assert bob.get(SCENE).json()["neighbours"] == {"before": [], "after": []}
+    alice.put("/api/v1/assignment/frames/45/", body(people=[row(7, 20)], done=True))
+    finish(Assignment.objects.get(worker__external_id="alice"))
+    Assignment.objects.filter(worker__external_id="alice").update(state=Assignment.State.ACCEPTED)
+    before = bob.get(SCENE).json()["neighbours"]["before"]
+    assert [frame["number"] for frame in before] == [45, 40, 35]
+    assert before[0]["annotations"] == [row(7, 20)]
+
+
 def test_the_scene_costs_the_same_queries_for_many_frames(
     alice: Caller, django_assert_max_num_queries: object
 ) -> None:
