@@ -4,6 +4,7 @@ import * as commands from "./commands.js";
 import { arrowSteps } from "./directions.js";
 import { showHelp } from "./help.js";
 import { gettext, ngettext } from "./messages.js";
+import { showSettings } from "./settings_dialog.js";
 
 const FAR = 10; // positions a step with Shift goes
 
@@ -12,14 +13,15 @@ const FAR = 10; // positions a step with Shift goes
  * run by the history; every refusal says why, where the annotator looks.
  */
 export class Actions {
-  constructor({ scene, store, history, saver, panes, notices, walk }) {
-    Object.assign(this, { scene, store, history, saver, panes, notices, walk });
+  constructor({ scene, store, history, saver, settings, panes, notices, walk }) {
+    Object.assign(this, { scene, store, history, saver, settings, panes, notices, walk });
     this.setControls = () => {};
   }
 
-  perform(id) {
+  /** @param {KeyboardEvent} [event] of a key; a button has none */
+  perform(id, event = null) {
     this._table ??= this._makeTable();
-    this._table[id]?.();
+    this._table[id]?.(event);
   }
 
   _makeTable() {
@@ -46,6 +48,7 @@ export class Actions {
       undo: () => this.undo(),
       redo: () => this.redo(),
       help: () => showHelp(),
+      settings: () => showSettings(this.settings),
       controls: () => this.setControls(true),
       escape: () => this.escape(),
     };

@@ -57,6 +57,7 @@ export class Bar {
       this._button("redo", "↷", { "aria-label": gettext("Redo") }),
       ...this._toggles,
       element("button", { type: "button", className: "quiet", title: gettext("Dark or light"), "aria-label": gettext("Dark or light"), onclick: toggleTheme }, "◐"),
+      this._button("settings", "⚙", { "aria-label": gettext("Settings") }),
       this._button("help", "?", { "aria-label": gettext("Keys and mouse") }),
     );
   }

@@ -38,6 +38,7 @@ const TABLE = [
   ["undo", "other", ["Ctrl+z"], () => gettext("undo")],
   ["redo", "other", ["Ctrl+y", "Ctrl+Shift+z"], () => gettext("redo")],
   ["help", "other", ["?", "F1"], () => gettext("this sheet")],
+  ["settings", "other", [","], () => gettext("settings")],
   ["controls", "other", ["F6"], () => gettext("let Tab move between the buttons; Escape returns to annotating")],
   ["escape", "other", ["Escape"], () => gettext("leave zoom, then let go of the person")],
 ];

@@ -16,10 +16,11 @@ const SHARE = 0.5; // of a pane's height for a zoomed person
  * the store and marks what has to be painted again. Emits `active` {view} and `zoom` {on}.
  */
 export class Panes extends Emitter {
-  constructor({ scene, store, images, options }) {
+  constructor({ scene, store, images, settings, options }) {
     super();
     this.scene = scene;
     this.store = store;
+    this.settings = settings;
     this.options = options;
     this.zoomed = false;
     this.ghost = null; // {annotation, look}: what a click would place

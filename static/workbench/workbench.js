@@ -10,6 +10,7 @@ import { Notices } from "./notices.js";
 import { Panes } from "./panes.js";
 import { PeoplePanel } from "./people_panel.js";
 import { Pointer } from "./pointer.js";
+import { Settings } from "./settings.js";
 import { Tutorial } from "./tutorial.js";
 import { Walk } from "./walk.js";
 
@@ -20,14 +21,15 @@ import { Walk } from "./walk.js";
  */
 export function buildWorkbench(root, session, { mode, home }) {
   const { scene, store, images, activity } = session;
-  const panes = new Panes({ scene, store, images, options: startOptions() });
+  const settings = new Settings();
+  const panes = new Panes({ scene, store, images, settings, options: startOptions() });
   panes.addExtra((pane) => directionItems(panes, pane));
   const notices = new Notices();
   const walk = new Walk({ ...session, notices, finish: () => finishAssignment({ ...session, walk, notices, home }) });
-  const actions = new Actions({ ...session, panes, notices, walk });
-  const perform = (id) => {
+  const actions = new Actions({ ...session, settings, panes, notices, walk });
+  const perform = (id, event) => {
     activity.note(store.current);
-    actions.perform(id);
+    actions.perform(id, event);
   };
   const bar = new Bar({ ...session, panes, walk, perform, home, signIn: signInAddress(mode, home) });
   const panel = new PeoplePanel({ scene, store, select: (person) => actions.select(person) });

@@ -1,0 +1,130 @@
+/**
+ * What an annotator has chosen, kept in this browser. Every row of the table is one choice with its default;
+ * rows with a label appear in the dialog, the others (layouts, keys, hints shown …) are only remembered.
+ */
+import { Emitter } from "./emitter.js";
+import { gettext } from "./messages.js";
+
+const PREFIX = "gtm-workbench-";
+
+/**
+ * @typedef {{value: any, label?: () => string, group?: string, choices?: () => [any, string][],
+ *            range?: {min: number, max: number, step: number}, hint?: () => string}} Row
+ * true or false: a check box; with `choices`: a menu; with `range`: a slider.
+ */
+
+/** @type {Record<string, Row>} */
+const TABLE = {
+  arrowAxes: {
+    value: "screen",
+    group: "moving",
+    label: () => gettext("Arrow keys follow"),
+    choices: () => [
+      ["screen", gettext("the screen, in the view under the pointer")],
+      ["ground", gettext("the axes of the ground, in every view")],
+    ],
+  },
+  heldKeysSpeedUp: {
+    value: true,
+    group: "moving",
+    label: () => gettext("Arrow keys held for long speed up"),
+    hint: () => gettext("The first 60 repeats move one position each, then two, then four."),
+  },
+  ghost: {
+    value: true,
+    group: "placing",
+    label: () => gettext("Show what a click would place"),
+  },
+};
+
+const GROUPS = {
+  placing: () => gettext("Placing"),
+  moving: () => gettext("Moving"),
+  seeing: () => gettext("Seeing"),
+  time: () => gettext("Going through the frames"),
+  other: () => gettext("Everything else"),
+};
+
+/** Emits `change` {name, value}, also for what another tab of this browser chose. */
+export class Settings extends Emitter {
+  constructor(storage = safeStorage()) {
+    super();
+    this._storage = storage;
+    this._values = new Map(Object.keys(TABLE).map((name) => [name, this._read(name)]));
+    window.addEventListener("storage", ({ key }) => key?.startsWith(PREFIX) && this._reread(key.slice(PREFIX.length)));
+  }
+
+  get(name) {
+    if (!this._values.has(name)) throw new RangeError(`unknown setting ${name}`);
+    return this._values.get(name);
+  }
+
+  set(name, value) {
+    if (!fits(TABLE[name], value)) throw new TypeError(`setting ${name} cannot be ${JSON.stringify(value)}`);
+    this._values.set(name, value);
+    try {
+      this._storage?.setItem(PREFIX + name, JSON.stringify(value));
+    } catch {
+      // the choice then lasts for this page only
+    }
+    this.emit("change", { name, value });
+  }
+
+  reset(name) {
+    this.set(name, structuredClone(TABLE[name].value));
+  }
+
+  /** Call at once and whenever it changes. @returns {() => void} stops it */
+  watch(name, listener) {
+    listener(this.get(name));
+    return this.on("change", (change) => change.name === name && listener(change.value));
+  }
+
+  _reread(name) {
+    if (!(name in TABLE)) return;
+    this._values.set(name, this._read(name));
+    this.emit("change", { name, value: this.get(name) });
+  }
+
+  /** What was stored by an older version, or by hand, may not fit any more. */
+  _read(name) {
+    try {
+      const value = JSON.parse(this._storage?.getItem(PREFIX + name) ?? "null");
+      if (fits(TABLE[name], value)) return value;
+    } catch {
+      // not JSON, or storage is forbidden
+    }
+    return structuredClone(TABLE[name].value);
+  }
+}
+
+/** Groups of rows for the dialog: [{title, rows: [{name, ...row}]}]. */
+export function settingGroups() {
+  return Object.entries(GROUPS)
+    .map(([group, title]) => ({
+      title: title(),
+      rows: Object.entries(TABLE)
+        .filter(([, row]) => row.label && row.group === group)
+        .map(([name, row]) => ({ name, ...row })),
+    }))
+    .filter(({ rows }) => rows.length);
+}
+
+function fits(row, value) {
+  if (!row || value === null || kind(value) !== kind(row.value)) return false;
+  if (row.choices) return row.choices().some(([choice]) => choice === value);
+  if (row.range) return value >= row.range.min && value <= row.range.max;
+  return true;
+}
+
+function kind(value) {
+  return Array.isArray(value) ? "array" : typeof value;
+}
+
+function safeStorage() {
+  try {
+    return window.localStorage;
+  } catch {
+    return null; // storage may be forbidden
+  }
+}
