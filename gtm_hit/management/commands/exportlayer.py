@@ -9,17 +9,26 @@ from django.core.management.base import BaseCommand, CommandError
 from gtm_hit.management.progress import ProgressLine
 from gtm_hit.models import Layer
 from gtm_hit.ops import exporting
+from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, FORMATS, chosen
 
 
 class Command(BaseCommand):
-    help = "Write a layer to a folder and a zip beside it: annotations, calibration, manifest."
+    help = "Write a layer to a folder and a zip beside it, in one or more formats, with a manifest."
 
     def add_arguments(self, parser: ArgumentParser) -> None:
         parser.add_argument("slug", help="the dataset")
         parser.add_argument("layer", help="the layer's name")
         parser.add_argument("folder", type=Path, help="a new or empty folder, or one with an earlier export")
+        parser.add_argument(
+            "--format",
+            type=lambda text: text.split(","),
+            default=DEFAULT_FORMATS,
+            metavar="FORMAT,FORMAT",
+            dest="formats",
+            help=f"{', '.join(FORMATS)} (default: {', '.join(DEFAULT_FORMATS)})",
+        )
 
-    def handle(self, *, slug: str, layer: str, folder: Path, **options: Any) -> None:
+    def handle(self, *, slug: str, layer: str, folder: Path, formats: list[str], **options: Any) -> None:
         found = Layer.objects.select_related("dataset").filter(dataset__slug=slug, name=layer).first()
         if found is None:
             names = ", ".join(Layer.objects.filter(dataset__slug=slug).values_list("name", flat=True))
@@ -27,10 +36,11 @@ class Command(BaseCommand):
         folder = folder.absolute()
         progress = ProgressLine(self.stderr)
         try:
+            formats = chosen(formats)
             exporting.require_replaceable(folder)
             partial = folder.with_name(f".{folder.name}.partial")
-            manifest = exporting.export_layer(found, folder, partial, progress)
-        except exporting.ExportError as error:
+            manifest = exporting.export_layer(found, folder, partial, progress, formats=formats)
+        except (exporting.ExportError, ValueError) as error:
             raise CommandError(str(error)) from error
         except OSError as error:
             raise CommandError(f"{error.filename or folder}: {error.strerror}") from error
