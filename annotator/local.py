@@ -110,7 +110,9 @@ def web_command(host: str, port: int) -> list[str]:
 
 def worker_command(data: Path) -> list[str]:
     return [
-        *(sys.executable, "-m", "celery", "--quiet", "-A", "annotator", "worker"),
+        # As root on a fresh machine or in a container Celery would fill the screen with advice.
+        *(sys.executable, "-W", "ignore:You're running the worker with superuser"),
+        *("-m", "celery", "--quiet", "-A", "annotator", "worker"),
         *("--beat", "--schedule", str(data / "beat-schedule"), "--pidfile", ""),
         *("--concurrency", "1", "--loglevel", "WARNING"),
     ]
