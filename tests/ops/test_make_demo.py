@@ -80,8 +80,8 @@ def test_an_impossible_number_of_frames_is_refused(frames: int) -> None:
 
 def test_a_crowd_that_finds_no_room_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = read_scene()
-    crowded = replace(scene, crowd=replace(scene.crowd, standing_alone=2000))
-    monkeypatch.setattr(demo, "read_scene", lambda: crowded)
+    closed = replace(scene, crowd=replace(scene.crowd, keep_clear=((3.0, 9.0, 100.0),)))
+    monkeypatch.setattr(demo, "read_scene", lambda: closed)
     monkeypatch.setattr(walks, "ATTEMPTS", 20)
     with pytest.raises(CommandError, match=r"20 frames with seed 7: no room .* try another seed"):
         run()
