@@ -43,7 +43,26 @@ export function bring(store, number, annotations) {
   return patch(store, label, annotations.map((one) => put(number, one)), { frame: number });
 }
 
-/** What the annotator says about a whole frame; not part of undo. */
+/** One person as in another frame, to be looked at; takes the place of what was known here. */
+export function copy(store, after) {
+  const label = gettext("copy person {person}", { person: after.person });
+  return patch(store, label, [put(store.current, after)], { select: after.person });
+}
+
+/** Edits of several frames at once, as one step. `edits` are {frame, person, after}. */
+export function fill(store, edits) {
+  const frames = new Set(edits.map(({ frame }) => frame)).size;
+  return patch(store, ngettext("fill {n} frame", "fill {n} frames", frames), edits);
+}
+
+/** The annotator leaves a frame as done; `nobody`: and says that nobody is there. */
+export function finishFrame(store, number, nobody) {
+  const place = store.numbers.indexOf(number) + 1;
+  const finished = patch(store, gettext("finish frame {place}", { place }), [], { frame: number });
+  return { ...finished, edits: [flagEdit(store, number, { done: true, nobody })] };
+}
+
+/** What the annotator says about a whole frame. */
 export function flagEdit(store, number, { done, nobody }) {
   const frame = store.frame(number);
   const before = { done: frame.done, nobody: frame.nobody };

@@ -7,9 +7,11 @@ const TOGETHER = 900; // ms; presses of a held key are one step to undo
 
 /** Undo and redo over the store, across frames. Emits `change` after every step. */
 export class History extends Emitter {
-  constructor(store) {
+  /** @param {(patch) => patch} complete adds what follows from an edit, so that both are one step */
+  constructor(store, complete = (patch) => patch) {
     super();
     this._store = store;
+    this._complete = complete;
     this._done = [];
     this._undone = [];
   }
@@ -22,7 +24,8 @@ export class History extends Emitter {
     return this._undone.at(-1)?.label ?? null;
   }
 
-  run(patch) {
+  run(wanted) {
+    const patch = this._complete(wanted);
     this._store.apply(patch.edits);
     if (patch.selection.after !== patch.selection.before) this._store.select(patch.selection.after);
     const last = this._done.at(-1);

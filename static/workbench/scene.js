@@ -1,6 +1,7 @@
 import { Camera, backProject, project } from "../geometry/camera.js";
 import { Grid } from "../geometry/grid.js";
 import { rectangle } from "../geometry/rectangle.js";
+import { byPerson } from "./annotation.js";
 
 /** What does not change while annotating: cameras, grid, cylinder, frames; and the geometry between them. */
 export class Scene {
@@ -18,7 +19,7 @@ export class Scene {
     this.grid = new Grid(json.grid);
     this.cylinder = json.cylinder;
     this.footRule = json.foot_rule;
-    this._numberStep = smallestStep(json.frames.map(({ number }) => number));
+    this.neighbours = readNeighbours(json.neighbours);
     this._rectangles = new WeakMap();
   }
 
@@ -49,7 +50,7 @@ export class Scene {
 
   /** When a frame was taken, seconds from number 0. */
   seconds(number) {
-    return (number / this._numberStep) * this.dataset.seconds_per_frame;
+    return (number / this.dataset.frame_step) * this.dataset.seconds_per_frame;
   }
 
   metres(position) {
@@ -81,7 +82,8 @@ export class Scene {
   }
 }
 
-/** Frames are numbered in steps; where one is missing the step is a multiple. */
-function smallestStep(numbers) {
-  return Math.min(...numbers.slice(1).map((number, index) => number - numbers[index]), Infinity);
+/** Accepted frames beside the batch, nearest first; the tutorial has none. */
+function readNeighbours({ before, after } = { before: [], after: [] }) {
+  const read = ({ number, annotations }) => ({ number, people: byPerson(annotations) });
+  return { before: before.map(read), after: after.map(read) };
 }

@@ -3,6 +3,7 @@ import { Api } from "./api.js";
 import { History } from "./history.js";
 import { Images } from "./images.js";
 import { Journal } from "./journal.js";
+import { withRefill } from "./keyframes.js";
 import { Loader } from "./loader.js";
 import { Saver } from "./saver.js";
 import { Scene } from "./scene.js";
@@ -26,7 +27,7 @@ export async function openSession(settings) {
   const [states, journal] = await Promise.all([loader.start(first), Journal.open(layerKey(scene))]);
   const activity = new Activity();
   const saver = new Saver({ api, store, journal, activity, practice: scene.mode === "tutorial" });
-  const history = new History(store);
+  const history = new History(store, (patch) => withRefill(store, scene, patch));
   loader.connect(saver, states);
   if (!scene.editable) saver.makeReadOnly(scene.readOnlyReason);
   await recover(journal, saver, loader, history);

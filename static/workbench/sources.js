@@ -1,14 +1,21 @@
-/** Frames that people can be carried over from. */
+/** Frames that people can be carried over from: of the batch, and accepted ones beside it. */
 const LOOK_BACK = 3; // frames on one side that movement is read from
 
-/** Frames with people before (`direction` -1) or after (1) a frame, nearest first, at most `LOOK_BACK`. */
+/**
+ * Frames with people before (`direction` -1) or after (1) a frame, nearest first.
+ * @returns {{number, time, people: Map, outside: boolean}[]} `outside`: of the neighbouring batch
+ */
 export function sourcesOn(store, scene, number, direction) {
   const index = store.numbers.indexOf(number);
   const side = direction < 0 ? store.numbers.slice(0, index).reverse() : store.numbers.slice(index + 1);
-  return side
-    .filter((one) => store.frame(one).loaded && store.people(one).size)
+  const inside = side
+    .filter((one) => store.frame(one).loaded)
+    .map((one) => ({ number: one, people: store.people(one), outside: false }));
+  const beyond = direction < 0 ? scene.neighbours.before : scene.neighbours.after;
+  return [...inside, ...beyond.map((frame) => ({ ...frame, outside: true }))]
+    .filter(({ people }) => people.size)
     .slice(0, LOOK_BACK)
-    .map((one) => ({ number: one, time: scene.seconds(one), people: store.people(one) }));
+    .map((source) => ({ ...source, time: scene.seconds(source.number) }));
 }
 
 /** The side whose people are nearer in time; the earlier one when both are as near. */
@@ -17,4 +24,14 @@ export function nearestSide(store, scene, number) {
   if (!before.length || !after.length) return before.length ? before : after;
   const time = scene.seconds(number);
   return time - before[0].time <= after[0].time - time ? before : after;
+}
+
+/**
+ * People from another layer's frame keep their numbers where this layer has never used them; the others are
+ * somebody else here, and get new numbers.
+ */
+export function withFreeNumbers(store, annotations) {
+  const free = new Set(annotations.map(({ person }) => person).filter((person) => store.isUnused(person)));
+  for (const person of free) store.reservePerson(person);
+  return annotations.map((one) => (free.has(one.person) ? one : Object.freeze({ ...one, person: store.takePerson() })));
 }

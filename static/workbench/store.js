@@ -47,6 +47,11 @@ export class Store extends Emitter {
     return this._nextPerson++;
   }
 
+  /** Whether no save and no edit of this layer has given the number to anybody. */
+  isUnused(person) {
+    return person >= this._nextPerson;
+  }
+
   reservePerson(person) {
     this._nextPerson = Math.max(this._nextPerson, person + 1);
   }

@@ -2,8 +2,9 @@ import { carriedOf } from "./annotation.js";
 import { predictPeople } from "./carry.js";
 import * as commands from "./commands.js";
 import { ask } from "./dialogs.js";
+import { between, isFilled } from "./keyframes.js";
 import { gettext, ngettext } from "./messages.js";
-import { nearestSide } from "./sources.js";
+import { nearestSide, withFreeNumbers } from "./sources.js";
 
 /**
  * Going through the frames. Leaving a frame forwards says it is done; a frame nobody has been to starts with
@@ -14,6 +15,7 @@ export class Walk {
     Object.assign(this, { scene, store, history, saver, images, loader, notices });
     this._finish = finish;
     this._busy = false;
+    this._carried = new Set(); // frames people were carried into on this visit
     store.on("frame", () => this._prefetch());
     this._prefetch();
   }
@@ -54,14 +56,28 @@ export class Walk {
     });
   }
 
-  /** People for a frame of a batch that was never saved and has nobody yet: from the nearer side, moved on. */
+  /**
+   * People for a frame of a batch that nobody has worked in yet: on the line between two keyframes, or moved on
+   * from the nearer side.
+   */
   carryInto(number) {
-    const { people, nobody } = this.store.frame(number);
-    if (!this.judging || people.size || nobody || this.saver.revision(number) > 0) return;
-    const sources = nearestSide(this.store, this.scene, number);
+    const { store, scene } = this;
+    if (!this._isFresh(number)) return;
+    const sources = nearestSide(store, scene, number);
     if (!sources.length) return;
-    const brought = predictPeople(this.scene.grid, this.scene.seconds(number), sources);
-    this.history.run(commands.bring(this.store, number, brought));
+    this._carried.add(number);
+    const expected = predictPeople(scene.grid, scene.seconds(number), sources, { except: store.people(number) });
+    const brought = sources[0].outside
+      ? withFreeNumbers(store, expected)
+      : expected.map((one) => between(store, scene, one.person, number) ?? one);
+    if (brought.length) this.history.run(commands.bring(store, number, brought));
+  }
+
+  /** Empty and never saved, or with nobody but people filled in from other frames. */
+  _isFresh(number) {
+    const { people, nobody, done } = this.store.frame(number);
+    if (!this.judging || nobody || done || this._carried.has(number)) return false;
+    return people.size ? [...people.values()].every(isFilled) : this.saver.revision(number) === 0;
   }
 
   /** Show a frame; whoever calls it has asked what has to be asked. */
@@ -86,7 +102,7 @@ export class Walk {
     const empty = this.store.people().size === 0;
     if (empty && !this.store.frame().nobody && !(await this._askNobody())) return false;
     const { done } = this.store.frame();
-    if (!done) this.store.apply([commands.flagEdit(this.store, number, { done: true, nobody: empty })]);
+    if (!done) this.history.run(commands.finishFrame(this.store, number, empty));
     return true;
   }
 
