@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
 from gtm_hit.demo import cloth
 from gtm_hit.demo.arrays import Floats
 from gtm_hit.demo.headwear import head
-from gtm_hit.demo.loft import Part, ball, bent_line, box, limb, loft
+from gtm_hit.demo.loft import Part, bent_line, box, limb, loft
 from gtm_hit.demo.pose import ANKLE, SIDES, UP, Pose
 from gtm_hit.demo.wardrobe import Bag, Bottom, Look, Top
 
@@ -17,13 +18,13 @@ from gtm_hit.demo.wardrobe import Bag, Bottom, Look, Top
 STATIONS = np.array([0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.66, 1.78, 1.88, 1.95, 2.04])
 MAN = np.array(
     [
-        [0.125, 0.166, 0.153, 0.156, 0.168, 0.174, 0.176, 0.168, 0.144, 0.106, 0.074, 0.058],
+        [0.125, 0.166, 0.153, 0.156, 0.168, 0.174, 0.182, 0.176, 0.156, 0.118, 0.080, 0.058],
         [0.100, 0.116, 0.108, 0.108, 0.116, 0.120, 0.116, 0.104, 0.092, 0.080, 0.068, 0.058],
     ]
 )
 WOMAN = np.array(
     [
-        [0.125, 0.172, 0.142, 0.134, 0.148, 0.152, 0.152, 0.146, 0.126, 0.090, 0.062, 0.048],
+        [0.125, 0.172, 0.142, 0.134, 0.148, 0.152, 0.160, 0.154, 0.136, 0.102, 0.066, 0.048],
         [0.102, 0.120, 0.098, 0.100, 0.122, 0.124, 0.106, 0.092, 0.080, 0.068, 0.058, 0.048],
     ]
 )
@@ -46,21 +47,27 @@ LEG = np.array(
 )
 BARE_LEG = np.array([0.05, 0.08, 0.082, 0.07, 0.055, 0.051, 0.05, 0.052, 0.038, 0.034, 0.034, 0.02])
 ARM = np.array(
-    [  # station, half width of a bare arm
-        [-0.17, 0.010],
-        [-0.13, 0.030],
-        [-0.05, 0.046],
-        [0.15, 0.051],
-        [0.45, 0.046],
-        [0.80, 0.041],
-        [1.00, 0.041],
-        [1.25, 0.040],
-        [1.60, 0.033],
-        [1.90, 0.027],
-        [1.98, 0.026],
-        [2.00, 0.012],
+    [  # station, half width and half depth of a bare arm; the hand lies beyond the wrist (2)
+        [-0.15, 0.004, 0.004],
+        [-0.13, 0.022, 0.023],
+        [-0.05, 0.045, 0.047],
+        [0.15, 0.051, 0.054],
+        [0.45, 0.046, 0.049],
+        [0.80, 0.041, 0.043],
+        [1.00, 0.041, 0.043],
+        [1.25, 0.040, 0.042],
+        [1.60, 0.033, 0.035],
+        [1.90, 0.027, 0.028],
+        [1.98, 0.025, 0.027],
+        [2.04, 0.020, 0.028],
+        [2.16, 0.017, 0.037],
+        [2.34, 0.016, 0.040],
+        [2.50, 0.014, 0.036],
+        [2.60, 0.011, 0.028],
+        [2.66, 0.003, 0.008],
     ]
 )
+WRIST = 1.97
 
 
 def body(look: Look, pose: Pose, build: float) -> list[Part]:
@@ -113,13 +120,15 @@ def _trunk(look: Look, pose: Pose, build: float) -> Part:
     width[0], depth[0] = 0.75 * width[0], 0.75 * depth[0]
     width[-1], depth[-1] = 0.04, 0.04
     centres, left, front = _spine(pose, stations)
-    colours = cloth.upper_body(look, look.bag is Bag.BACKPACK)
-    if look.bottom is Bottom.DRESS:
-        colours = cloth.upper_body(_in_one_colour(look), look.bag is Bag.BACKPACK)
+    colours = cloth.upper_body(_top_of(look), look.bag is Bag.BACKPACK)
     return Part(loft(centres, left, front, width, depth, 2.3, 28), colours)
 
 
-def _in_one_colour(look: Look) -> Look:
+@lru_cache(maxsize=256)
+def _top_of(look: Look) -> Look:
+    """A dress is of one colour."""
+    if look.bottom is not Bottom.DRESS:
+        return look
     return replace(look, top_colour=look.bottom_colour)
 
 
@@ -150,27 +159,20 @@ def _legs(look: Look, pose: Pose, build: float) -> list[Part]:
 
 
 def _arms(look: Look, pose: Pose, build: float) -> list[Part]:
-    bare_from = 0.36 if look.top is Top.TSHIRT else 1.0
+    bare_from = 0.62 if look.top is Top.TSHIRT else WRIST
     girth = (0.4 + 0.6 * build) * (0.86 if look.womanly else 1.0)
-    stations = np.interp(np.linspace(0, 1, 21), np.linspace(0, 1, len(ARM)), ARM[:, 0])
-    width = np.interp(stations, ARM[:, 0], ARM[:, 1]) * girth
-    sleeved = stations < -0.17 + 2.17 * bare_from
-    width = np.where(sleeved, width + EASE[look.top] * 0.75, width)
-    worn = _in_one_colour(look) if look.bottom is Bottom.DRESS else look
-    sleeve, skin = cloth.sleeve(worn, bare_from), cloth.plain(look.skin, look.seed + 7, 0.04, 0.01)
-    parts = []
-    for side, joints in zip(SIDES, pose.arms, strict=True):
-        parts.append(Part(limb(joints, pose.chest[1] + 0.3 * UP, stations, width, width * 1.06, 0.2), sleeve))
-        parts.append(Part(_hand(joints, side, pose), skin))
-    return parts
+    stations = np.interp(np.linspace(0, 1, 27), np.linspace(0, 1, len(ARM)), ARM[:, 0])
+    sleeved = np.where(stations < bare_from, EASE[look.top] * 0.75, 0.0)
+    width, depth = (np.interp(stations, ARM[:, 0], sizes) * girth + sleeved for sizes in ARM[:, 1:].T)
+    # Rows of the colours follow the rings, not their distances.
+    share = float(np.interp(bare_from, stations, np.linspace(0, 1, len(stations))))
+    sleeve = cloth.sleeve(_top_of(look), share)
+    return [Part(limb(joints, _palm(pose), stations, width, depth, 0.2), sleeve) for joints in pose.arms]
 
 
-def _hand(joints: Floats, side: float, pose: Pose) -> Floats:
-    reach = joints[2] - joints[1]
-    reach /= np.linalg.norm(reach)
-    palm = pose.chest[0] * side - reach * (reach @ pose.chest[0]) * side
-    palm /= np.linalg.norm(palm)
-    return ball(joints[2] + 0.062 * reach, palm, np.cross(reach, palm), reach, (0.020, 0.038, 0.085))
+def _palm(pose: Pose) -> Floats:
+    """What the flat of the hand is square to: hands hang with their edges to the front."""
+    return pose.chest[1] + 0.3 * UP
 
 
 def _shoes(look: Look, pose: Pose) -> list[Part]:

@@ -1,11 +1,12 @@
 """Colours of clothes, skin and hair as small pictures that are stretched over the body's surfaces.
 
 Rows run from the first ring of a surface to its last, columns around it: back, right, front, left, back.
+Pictures of a look are made once and shared, so whoever takes one must not change it.
 """
 
 from __future__ import annotations
 
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 
@@ -17,26 +18,31 @@ ROWS, COLUMNS = 96, 96
 FRONT = COLUMNS // 2
 
 
-@cache
+@lru_cache(maxsize=1)
 def _folds() -> tuple[Floats, Floats]:
     rng = np.random.default_rng(20)
     return cloudy(rng, (256, 256), 1.55, 0.45), cloudy(rng, (256, 256), 0.4)
 
 
-def plain(colour: Floats, seed: int, folds: float = 0.11, weave: float = 0.03) -> Floats:
+def plain(colour: Floats, seed: int, folds: float = 0.16, weave: float = 0.03) -> Floats:
     """A cloth with soft folds, drawn out along the surface."""
+    return (_tone(seed, folds, weave) * colour).astype(np.float32)
+
+
+@lru_cache(maxsize=1024)
+def _tone(seed: int, folds: float, weave: float) -> Floats:
     rng = np.random.default_rng(seed)
     down, across = rng.integers(0, 160, 2)
     wrinkles, threads = (texture[down : down + ROWS, across : across + COLUMNS] for texture in _folds())
     # The back column and its copy meet: fade the folds out there, or a seam shows.
-    fade = np.maximum(np.sin(np.linspace(0, np.pi, COLUMNS)), 0).astype(np.float32) ** np.float32(0.35)
-    tone = np.exp(folds * wrinkles * fade + weave * threads)
-    return (tone[..., None] * colour).astype(np.float32)
+    fade = np.maximum(np.sin(np.linspace(0, np.pi, COLUMNS)), 0) ** 0.35
+    return np.exp(folds * wrinkles * fade + weave * threads).astype(np.float32)[..., None]
 
 
+@lru_cache(maxsize=256)
 def trousers(look: Look, bare_from: float) -> Floats:
     """Legs from the hip down; skin from the share `bare_from` of the length on."""
-    cloth = plain(look.bottom_colour, look.seed + 1, 0.13)
+    cloth = plain(look.bottom_colour, look.seed + 1, 0.19)
     rows = np.arange(ROWS)
     cloth[:, [COLUMNS // 4, COLUMNS // 4 + 1]] *= 0.82  # seams
     cloth[:, [3 * COLUMNS // 4, 3 * COLUMNS // 4 + 1]] *= 0.82
@@ -49,18 +55,17 @@ def trousers(look: Look, bare_from: float) -> Floats:
     return cloth
 
 
+@lru_cache(maxsize=256)
 def sleeve(look: Look, bare_from: float) -> Floats:
     """Arms from the shoulder down."""
-    cloth = _patterned(look, plain(look.top_colour, look.seed + 3, 0.12), 5.0)
+    cloth = _patterned(look, plain(look.top_colour, look.seed + 3, 0.18), 5.0)
     edge = int(bare_from * ROWS)
     cloth[edge:] = plain(look.skin, look.seed + 4, 0.03, 0.01)[edge:]
-    if edge < ROWS:
-        cloth[edge - 3 : edge] *= 0.78
-    else:
-        cloth[-6:] *= 0.8
+    cloth[edge - 2 : edge] *= 0.75
     return cloth
 
 
+@lru_cache(maxsize=256)
 def upper_body(look: Look, straps: bool) -> Floats:
     """From the hem (row 0) up to the neck."""
     cloth = _patterned(look, plain(look.top_colour, look.seed + 5), 9.0)
@@ -108,6 +113,7 @@ def _contrast(colour: Floats) -> Floats:
     return (stripe / np.maximum(colour, 0.01)).astype(np.float32)
 
 
+@lru_cache(maxsize=256)
 def face(look: Look) -> Floats:
     """The head from the chin (row 0) to the crown; rows are 2.5 mm, columns 3.75 degrees."""
     picture = np.broadcast_to(look.skin, (ROWS, COLUMNS, 3)).astype(np.float32).copy()
@@ -141,6 +147,7 @@ def hair(colour: Floats, seed: int) -> Floats:
     return strands
 
 
+@lru_cache(maxsize=256)
 def shoe(look: Look) -> Floats:
     """From heel to toe; the sole is where the columns meet."""
     picture = plain(look.shoe_colour, look.seed + 8, 0.06)

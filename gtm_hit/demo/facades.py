@@ -18,7 +18,7 @@ Paint = Callable[[Floats, Floats, Floats], tuple[Floats, Flags | None]]
 
 SANDSTONE, GROUT = linear("9f9480"), linear("756b5a")
 DOOR, PANE, FRAME, BRASS = linear("4e2f20"), linear("2b333b"), linear("857c70"), linear("9a8454")
-TREAD, RISER, NOSING = linear("aaa294"), linear("a0988b"), linear("e4e1d8")
+TREAD, RISER, NOSING = linear("a09889"), linear("978f82"), linear("cfcbc0")
 CAPSTONE, LEAF = linear("a9a193"), linear("4a5b2c")
 
 
@@ -259,8 +259,14 @@ def _shopfronts(colour: Floats, x: Floats, h: Floats, blur: Floats, grain: _Grai
     colour[(np.abs(x) < 1.5) & (h < 2.9)] = FRAME * np.float32(0.5)
     pane = PANE * (0.7 + 0.5 * h + 0.3 * np.sin(x * 3 + house))[:, None]
     colour[glass] = pane[glass]
-    lamp = np.clip(grain.block(np.floor(x * 3 + house * 5), np.floor(h * 3)) - 0.9, 0, 1)
-    colour[glass] += (lamp[:, None] * linear("e8b878") * np.float32(0.7))[glass]
+    display = np.clip(1 - np.abs(h - 1.1) / 0.7, 0, 1) * np.clip(
+        grain(x * 5 + house, h * 4, blur) - 0.95, 0, 1
+    )
+    colour[glass] += (display[:, None] * linear("e8b878") * np.float32(1.4))[glass]
+    mirrored = np.mod(x * 0.8 + h * 0.55 + house * 0.37, 1.3) < 0.42
+    colour[glass & mirrored] *= 1.7
+    mullion = box_cover(np.abs(x) - np.float32(0.45), 0.04, blur) * glass
+    colour += (FRAME * np.float32(0.5) - colour) * mullion[:, None]
     awning = (np.abs(x) < 1.6) & (h > 2.7) & (h < 3.35)
     shades = np.array([linear("8e2f27"), linear("2f4f45"), linear("c9bda2"), linear("31405c")])
     chosen = shades[np.mod(np.round(awning_tone * 3), 4).astype(int)]
@@ -279,9 +285,9 @@ def _greenery(scene: Scene) -> list[Wall]:
             mass = clumps[_index(h, 24 / scale), _index(s, 24 / scale)]
             leaf = leaves[_index(h, 90 / scale), _index(s, 90 / scale)] / (1 + np.square(blur / 0.05))
             skyline = top - bottom - ragged * (1.0 + clumps[7, _index(s, 16 / scale)])
-            exists = h + 0.3 * ragged * leaf + 0.35 * ragged * mass < skyline
+            exists = h + 0.12 * ragged * leaf + 0.6 * ragged * mass < skyline
             depth = np.clip(h / np.maximum(skyline, 0.1), 0, 1)
-            light = tone * np.exp(0.28 * leaf + 0.30 * mass) * (0.5 + 0.75 * depth)
+            light = tone * np.exp(0.26 * leaf + 0.42 * mass) * (0.55 + 0.75 * depth)
             colour = LEAF * light[:, None]
             colour[:, 0] *= 1 + 0.12 * mass
             return colour.astype(np.float32), exists
@@ -292,9 +298,7 @@ def _greenery(scene: Scene) -> list[Wall]:
     south, north = scene.paving.south - 25, scene.paving.north + 30
     return [
         Wall(
-            np.array([x - 0.9, south, 0.0]), NORTH, UP, north - south, 1.9, foliage(0, 1.75, 0.09, 1.0, 0.9)
+            np.array([x - 0.9, south, 0.0]), NORTH, UP, north - south, 1.9, foliage(0, 1.75, 0.09, 1.0, 1.5)
         ),
-        Wall(
-            np.array([x - 9, south, -6.0]), NORTH, UP, north - south, 13.0, foliage(-6, 6.0, 1.5, 4.0, 0.75)
-        ),
+        Wall(np.array([x - 9, south, -6.0]), NORTH, UP, north - south, 13.0, foliage(-6, 5.6, 1.5, 4.0, 1.6)),
     ]

@@ -86,7 +86,7 @@ def _ears(look: Look, pose: Pose) -> list[Part]:
     left, front, up = pose.face
     colours = cloth.plain(look.skin * np.float32(0.9), look.seed + 13, 0.02, 0.01)
     spots = [pose.head + side * 0.074 * left - 0.008 * front - 0.004 * up for side in (1, -1)]
-    return [Part(ball(spot, left, front, up, (0.011, 0.020, 0.031), 7), colours) for spot in spots]
+    return [Part(ball(spot, left, front, up, (0.011, 0.020, 0.031), 7), colours, True) for spot in spots]
 
 
 def _scalp(look: Look, pose: Pose) -> Part:

@@ -7,13 +7,13 @@ import numpy as np
 from gtm_hit.demo.arrays import Floats
 from gtm_hit.demo.scene import Mood
 
-SUN = np.array([2.75, 2.52, 2.10], dtype=np.float32)
-SKY = np.array([0.50, 0.60, 0.76], dtype=np.float32)
-BOUNCE = np.array([0.44, 0.40, 0.34], dtype=np.float32)  # light that the sunlit ground sends back up
+SUN = np.array([3.55, 3.22, 2.66], dtype=np.float32)
+SKY = np.array([0.44, 0.54, 0.70], dtype=np.float32)
+BOUNCE = np.array([0.46, 0.41, 0.34], dtype=np.float32)  # light that the sunlit ground sends back up
 HAZE = np.array([0.98, 1.02, 1.06], dtype=np.float32)
-HAZE_DISTANCE = 420.0  # metres after which 63 % of what one sees is haze
+HAZE_DISTANCE = 1300.0  # metres after which 63 % of what one sees is haze
 
-EXPOSURE = 0.78
+EXPOSURE = 0.70
 SHOULDER = 0.42  # how softly highlights run into white
 
 
@@ -43,5 +43,5 @@ def develop(light: Floats, mood: Mood) -> Floats:
     np.clip(exposed, 0, 1, out=exposed)
     shown = np.power(exposed, np.float32(1 / 2.2), out=exposed)
     # A little contrast around the middle, as cameras add it.
-    shown += np.float32(0.10) * shown * (1 - shown) * (2 * shown - 1)
+    shown += np.float32(0.16) * shown * (1 - shown) * (2 * shown - 1)
     return shown * np.float32(255)

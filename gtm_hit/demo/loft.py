@@ -22,6 +22,7 @@ class Part:
 
     points: Floats
     colours: Floats
+    detail: bool = False  # too small to be seen from afar
 
 
 def ring_angles(sectors: int = SECTORS) -> Floats:

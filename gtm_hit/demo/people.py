@@ -20,7 +20,7 @@ from gtm_hit.demo.splat import Mesh
 from gtm_hit.demo.walks import Walks, make_walks
 from gtm_hit.demo.wardrobe import Look, dress_everybody
 
-SHADOW_CELL = 0.016  # metres
+SHADOW_CELL = 0.02  # metres
 SHADOW_REACH = 7.0  # metres around the grid on which people's shadows are kept
 CONTACT_HEIGHT = 0.22  # metres; what is lower keeps skylight from the ground beneath it
 
@@ -50,7 +50,7 @@ class Moment:
     def shadow(self) -> Bytes:
         """(rows, columns, 2) of the sun map: how much sun and how much sky people take, 0…255."""
         cell = self.sun_map.cell
-        sun = self.sun_map.soft_mask(0.016, 0.035)
+        sun = self.sun_map.soft_mask(0.009, 0.024)
         low = (self.sun_map.top > 0) & (self.sun_map.top < CONTACT_HEIGHT)
         sky = cv2.GaussianBlur(low.astype(np.float32), (0, 0), 0.05 / cell)
         wide = cv2.GaussianBlur((self.sun_map.top > 0).astype(np.float32), (0, 0), 0.16 / cell)

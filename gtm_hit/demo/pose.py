@@ -79,7 +79,7 @@ def pose(phase: float, speed: float, arms: Arms, gaze: float, turn_out: float = 
         (middle - 0.10 * UP, middle + 0.36 * UP + [0.012 + lean * 0.3, 0, 0], middle + 0.575 * chest[2])
     )
     spine[2, 0] += 0.01
-    shoulders = spine[2] - 0.088 * chest[2] + np.outer(SIDES * SHOULDER_WIDTH, chest[0])
+    shoulders = spine[2] - 0.098 * chest[2] + np.outer(SIDES * SHOULDER_WIDTH, chest[0])
     arm_joints = _arms(shoulders, chest, swing / FULL_STEP, arms, speed > 0)
     face = _turned(gaze, 0.06 if arms is not Arms.PHONE else 0.38)
     return Pose(

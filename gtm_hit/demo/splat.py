@@ -11,7 +11,8 @@ from gtm_hit.demo.arrays import Flags, Floats, Indices
 from gtm_hit.demo.loft import Part
 from gtm_hit.geometry.camera import Camera
 
-DENSITY = 1.12  # samples per pixel side; less than 1 leaves holes
+DENSITY = 0.95  # samples per pixel side; each covers two, and rows of samples may run across the pixels
+DETAILS_FROM = 420  # rows of samples that a picture must have for small parts to be drawn
 NEAR = 0.6  # metres; what comes closer to a camera is not drawn
 
 
@@ -64,7 +65,11 @@ def rasterise(mesh: Mesh, placed: Floats, shape: tuple[int, int]) -> tuple[Float
 
     `placed` is (N, 4): x and y in pixels, depth, how much the surface faces the viewer; backs are left out.
     """
-    samples = [_samples(part, rows, light) for part, rows, light in _by_part(mesh, placed, shape)]
+    values = np.concatenate((placed, mesh.light), axis=1)
+    shown = _by_part(mesh.parts, values, shape)
+    if shape[0] < DETAILS_FROM:
+        shown = [(part, rows) for part, rows in shown if not part.detail]
+    samples = [_samples(part, rows) for part, rows in shown]
     if not samples:
         return np.zeros((*shape, 3), np.float32), np.zeros(shape, np.bool_)
     colour = np.concatenate([colour for _, colour in samples])
@@ -104,40 +109,63 @@ def far_to_near(depth: Floats) -> Indices:
 
 def sample_parts(mesh: Mesh, placed: Floats, shape: tuple[int, int]) -> Floats:
     """Only the places (N, 4) of the samples that `rasterise` would draw."""
-    return np.concatenate(
-        [_spread(rows, *_density(rows)).reshape(-1, 4) for _, rows, _ in _by_part(mesh, placed, shape)]
-    )
+    found = _by_part(mesh.parts, placed, shape)
+    return np.concatenate([_spread(rows, *_density(rows)).reshape(-1, 4) for _, rows in found])
 
 
-def _by_part(mesh: Mesh, placed: Floats, shape: tuple[int, int]) -> list[tuple[Part, Floats, Floats]]:
-    """The parts that come into a picture of this shape, with their points' places and light."""
+def _by_part(parts: tuple[Part, ...], values: Floats, shape: tuple[int, int]) -> list[tuple[Part, Floats]]:
+    """The parts that come into a picture of this shape, with their points' values (R, S + 1, k)."""
     found, start = [], 0
-    for part in mesh.parts:
+    for part in parts:
         rings, columns = part.points.shape[:2]
-        stop = start + rings * columns
-        place, light = placed[start:stop], mesh.light[start:stop]
-        outside = (place[:, :2].max(axis=0) < 0) | (place[:, :2].min(axis=0) > shape[::-1])
+        rows = values[start : start + rings * columns]
+        start += rings * columns
+        outside = (rows[:, :2].max(axis=0) < 0) | (rows[:, :2].min(axis=0) > shape[::-1])
         if not outside.any():
-            found.append((part, place.reshape(rings, columns, 4), light.reshape(rings, columns, 3)))
-        start = stop
+            found.append((part, rows.reshape(rings, columns, -1)))
     return found
 
 
-def _samples(part: Part, placed: Floats, light: Floats) -> tuple[Floats, Floats]:
-    rings, columns = _density(placed)
-    colour = _spread(part.colours, rings * ((len(part.colours) - 1) / (len(placed) - 1)), columns)
-    colour *= _spread(light, rings, columns)
-    return _spread(placed, rings, columns).reshape(-1, 4), colour.reshape(-1, 3)
+def _samples(part: Part, values: Floats) -> tuple[Floats, Floats]:
+    """Places (N, 4) and colours (N, 3) of samples, from the places and light (R, S + 1, 7) of a part's points."""
+    front = _front(values[..., 3])
+    if front is None:
+        return np.zeros((0, 4), np.float32), np.zeros((0, 3), np.float32)
+    start, count = front
+    sectors, width = values.shape[1] - 1, part.colours.shape[1]
+    values = values[:, (start + np.arange(count + 1)) % sectors]
+    stripe = (round(start / sectors * width) + np.arange(max(round(count / sectors * width), 2))) % width
+    rings, columns = _density(values)
+    spread = _spread(values, rings, columns)
+    rows = rings * ((len(part.colours) - 1) / (len(values) - 1))
+    colour = _spread(part.colours[:, stripe], rows, columns)
+    colour *= spread[..., 4:]
+    return spread[..., :4].reshape(-1, 4), colour.reshape(-1, 3)
+
+
+def _front(facing: Floats) -> tuple[int, int] | None:
+    """The first sector and the number of sectors of a part of which something faces the viewer."""
+    sectors = facing.shape[1] - 1
+    seen = (facing[:, :sectors] > 0).any(axis=0)
+    if not seen.any():
+        return None
+    if seen.all():
+        return 0, sectors
+    turn = int(np.argmin(seen))  # start counting where it is turned away, so that the front is in one piece
+    shown = np.flatnonzero(np.roll(seen, -turn))
+    first = int(shown[0]) - 1
+    return (turn + first) % sectors, min(int(shown[-1]) + 1 - first, sectors)
 
 
 def _density(placed: Floats) -> tuple[Floats, int]:
     """Between which rings (n,) to sample, evenly along the surface in pixels, and how many times around."""
-    flat = placed[..., :2]
-    along = np.linalg.norm(np.diff(flat, axis=0), axis=2).max(axis=1).cumsum()
-    sectors = np.linalg.norm(np.diff(flat, axis=1), axis=2)
-    around = max(sectors.sum(axis=1).max(), 0.62 * sectors.max() * sectors.shape[1])
-    stops = np.linspace(0, along[-1], max(int(along[-1] * DENSITY), 2) + 1)
-    rings = np.interp(stops, np.concatenate(([0], along)), np.arange(len(placed)))
+    x, y = placed[..., 0], placed[..., 1]
+    down = np.hypot(x[1:] - x[:-1], y[1:] - y[:-1])
+    sectors = np.hypot(x[:, 1:] - x[:, :-1], y[:, 1:] - y[:, :-1])
+    along = np.concatenate(([0.0], down.max(axis=1).cumsum()))
+    around = max(float(sectors.sum(axis=1).max()), 0.8 * float(sectors.max()) * sectors.shape[1])
+    count = max(int(along[-1] * DENSITY), 2)
+    rings = np.interp(np.arange(count + 1) * (along[-1] / count), along, np.arange(len(placed)))
     return rings.astype(np.float32), max(int(around * DENSITY), 3)
 
 
@@ -155,4 +183,4 @@ def _shrunk(values: Floats, size: tuple[int, int]) -> Floats:
 
 def _fineness(height: float) -> float:
     """Into how many samples a pixel is divided along each side."""
-    return 3.0 if height < 110 else 2.0 if height < 320 else 1.5
+    return 2.0 if height < 180 else 1.5 if height < 420 else 1.25

@@ -98,7 +98,7 @@ def _with_shadows(view: View, now: Moment) -> Bytes:
         borderMode=cv2.BORDER_CONSTANT,
         borderValue=0,
     )
-    touched = np.nonzero(hidden.any(axis=2))
+    touched = np.nonzero(np.asarray(hidden).view(np.uint16)[..., 0])  # either of the two bytes
     sun, sky = (hidden[touched].astype(np.float32) / 255).T
     lit, dark = picture[touched].astype(np.float32), view.shaded[touched].astype(np.float32)
     mixed = (lit + (dark - lit) * sun[:, None]) * (1 - np.float32(CONTACT) * sky[:, None])

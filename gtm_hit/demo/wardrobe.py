@@ -12,11 +12,11 @@ from gtm_hit.demo.light import linear
 from gtm_hit.demo.pose import Arms
 from gtm_hit.demo.walks import Walks
 
-SKINS = ("f1c9a5", "e3b08a", "c98e62", "9a6440", "6b432b", "f4d3b6", "d9a47c")
+SKINS = ("d9ad8a", "cc9872", "b57d54", "8a5838", "60402c", "deb896", "c48f69")
 HAIRS = ("1c1613", "2b1d14", "4a2f1b", "7a5230", "b58a4e", "8d8a86", "140f0d", "5b2f1d")
 TOPS = (
-    "b3262e", "20406f", "e9e6df", "2c2d31", "3f6f4c", "d8a127", "6c87a8", "7b2f4a", "d5552f", "11767c",
-    "8d8f92", "c9b497", "5a4a7f", "1b2a44", "d98ba0", "5c6b3a", "f0ede6", "35383d",
+    "9c2a30", "28456f", "dedad2", "2c2d31", "3f6f4c", "c79a36", "6c87a8", "7b2f4a", "c05a38", "1f6d72",
+    "8d8f92", "c9b497", "5a4a7f", "1b2a44", "d98ba0", "5c6b3a", "e6e2da", "35383d",
 )  # fmt: skip
 COATS = ("1f2226", "b08d57", "3b4a3c", "6d2430", "27364f", "8a8378", "c7bca6", "4c4038")
 TROUSERS = (
@@ -65,7 +65,7 @@ class Bag(StrEnum):
     SUITCASE = "suitcase"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Look:
     """One person's clothes; colours are linear light (3,)."""
 
