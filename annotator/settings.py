@@ -86,6 +86,7 @@ STATIC_ROOT = DATA_DIR / "static"
 MEDIA_ROOT = DATA_DIR / "media"  # image derivatives, by digest
 TABLES_ROOT = DATA_DIR / "tables"  # rectangle tables, by digest; memory-mapped, so always a local folder
 EXPORTS_ROOT = DATA_DIR / "exports"
+RELEASES_ROOT = DATA_DIR / "releases"
 INCOMING_ROOT = DATA_DIR / "incoming"  # folders and videos put on the server for import
 UPLOADS_ROOT = DATA_DIR / "uploads"  # archives that came through the browser
 MAX_UPLOAD_MB = environment.integer("MAX_UPLOAD_MB", 2048, minimum=1, maximum=1_000_000)

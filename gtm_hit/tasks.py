@@ -9,13 +9,16 @@ from celery.signals import worker_ready
 from django.utils import timezone
 
 from gtm_hit.models import Job
-from gtm_hit.ops import assignments, exporting, import_jobs, jobs, uploads
+from gtm_hit.ops import assignments, exporting, import_jobs, jobs, releases, uploads
+from gtm_hit.ops.annotation_import import job as annotation_job
 from gtm_hit.ops.calibration import job as calibration_job
 
 OPERATIONS: dict[str, jobs.Operation] = {
     Job.Kind.EXPORT_LAYER: exporting.run,
     Job.Kind.IMPORT_DATASET: import_jobs.run_import,
     Job.Kind.IMPORT_VIDEOS: import_jobs.run_videos,
+    Job.Kind.IMPORT_ANNOTATIONS: annotation_job.run,
+    Job.Kind.MAKE_RELEASE: releases.run,
     Job.Kind.REPLACE_CALIBRATION: calibration_job.run,
 }
 

@@ -56,11 +56,12 @@ def import_annotations(
     source: AnnotationSource,
     report: Report,
     confirm: Callable[[], None] = no_confirmation,
+    remember: Callable[[LayerReport], None] | None = None,
 ) -> LayerReport:
     """Make a layer of annotation files.
 
     Raises ImportFailed with everything that is wrong or does not fit and is not to be dropped; then nothing
-    is imported. `confirm` is asked once before anything is written.
+    is imported. `confirm` is asked once before anything is written, `remember` told in its transaction.
     """
     findings = Findings(frozenset(source.drop))
     try:
@@ -80,10 +81,13 @@ def import_annotations(
                 dataset=dataset, name=source.layer, kind=Layer.Kind.IMPORTED, hidden=source.hidden
             )
             rows.add_annotations(layer, _told(_frames(people), frames, report))
+            done = LayerReport(layer, frames, len(np.unique(people.persons)), len(people), findings.dropped)
+            if remember:
+                remember(done)
     except IntegrityError as error:
         reason = "was made by somebody else in the meantime; choose another name"
         raise ImportFailed((Problem(source.layer, "", reason),)) from error
-    return LayerReport(layer, frames, len(np.unique(people.persons)), len(people), findings.dropped)
+    return done
 
 
 def _read(dataset: Dataset, source: AnnotationSource, report: Report, findings: Findings) -> People:

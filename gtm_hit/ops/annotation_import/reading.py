@@ -68,6 +68,7 @@ def read_wildtrack(path: Path, scene: Scene, report: Report) -> People:
 
 
 def read_csv_metres(path: Path, scene: Scene, report: Report) -> People:
+    path = _only(path, ".csv")
     table = read_csv(path, repeated=True)
     report(READING, 1, 1)
     sources = _lines(path, table.lines)
@@ -81,6 +82,7 @@ def read_csv_metres(path: Path, scene: Scene, report: Report) -> People:
 
 def read_text(path: Path, scene: Scene, report: Report) -> People:
     """`frame column row`, and the person where all lines have one."""
+    path = _only(path, ".txt")
     table = frame_column_row.read(path, persons=None, repeated=True)
     report(READING, 1, 1)
     grid = scene.grid
@@ -90,10 +92,11 @@ def read_text(path: Path, scene: Scene, report: Report) -> People:
 
 
 def read_mot_files(path: Path, scene: Scene, report: Report) -> People | Boxes:
-    """A file of people on the ground, or a folder with a file per view; its ground file is taken alone."""
-    if path.is_file():
-        return _ground(path, read_mot(path, ANY_FRAME, repeated=True), scene)
-    views = _mot_views(path)
+    """A file of people on the ground, or a folder with a file per view.
+
+    A folder's ground file says exactly where people stand, so it is taken alone.
+    """
+    views = {GROUND: path} if path.is_file() else _mot_views(path)
     if GROUND in views and GROUND not in scene.cameras:
         file = views[GROUND]
         return _ground(file, read_mot(file, ANY_FRAME, repeated=True), scene)
@@ -163,6 +166,18 @@ def _people_of(frames: Sequence[FrameAnnotations], paths: list[Path], scene: Sce
         sources=Sources(paths, columns[3], columns[4], "entry {}"),
         empty=[frame.number - offset for frame in frames if not frame.people],
     )
+
+
+def _only(path: Path, suffix: str) -> Path:
+    """The file itself, or the only one of its kind in a folder."""
+    if not path.is_dir():
+        return path
+    problems = ProblemList(path)
+    files = DatasetFolder(path, problems).files(path, {suffix})
+    if len(files) != 1:
+        problems.add("", f"holds {len(files)} {suffix} files instead of one")
+    problems.raise_if_any()
+    return files[0]
 
 
 def _lines(path: Path, lines: Ids | None) -> Sources:

@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+from argparse import ArgumentParser
+from pathlib import Path
+from typing import Any
+
+from django.conf import settings
+from django.core.management.base import BaseCommand, CommandError
+
+from gtm_hit.management.progress import ProgressLine
+from gtm_hit.models import Layer
+from gtm_hit.ops import exporting, releases
+from gtm_hit.ops.export_formats.registry import FORMATS
+
+
+class Command(BaseCommand):
+    help = "Release a layer: a numbered export with provenance, changes, licence and statistics."
+
+    def add_arguments(self, parser: ArgumentParser) -> None:
+        parser.add_argument("slug", help="the dataset")
+        parser.add_argument("layer", help="the layer's name")
+        parser.add_argument("--title", default="", help="a few words for the list of releases")
+        parser.add_argument("--licence", type=Path, required=True, metavar="FILE", help="text of the licence")
+        parser.add_argument(
+            "--format",
+            type=lambda text: text.split(","),
+            default=releases.FORMATS,
+            metavar="FORMAT,FORMAT",
+            dest="formats",
+            help=f"{', '.join(FORMATS)} (default: {', '.join(releases.FORMATS)})",
+        )
+
+    def handle(self, *, slug: str, layer: str, licence: Path, **options: Any) -> None:
+        found = Layer.objects.select_related("dataset").filter(dataset__slug=slug, name=layer).first()
+        if found is None:
+            names = ", ".join(Layer.objects.filter(dataset__slug=slug).values_list("name", flat=True))
+            raise CommandError(f"no layer {layer} in dataset {slug}; there are: {names or 'none'}")
+        progress = ProgressLine(self.stderr)
+        try:
+            text = licence.read_text(encoding="utf-8")
+            order = releases.Order(found, text, options["title"], options["formats"])
+            partial = settings.RELEASES_ROOT / slug / ".partial"
+            release = releases.make_release(order, partial, progress)
+        except exporting.ExportError as error:
+            raise CommandError(str(error)) from error
+        except UnicodeDecodeError as error:
+            raise CommandError(f"{licence} is no text in UTF-8") from error
+        except OSError as error:
+            raise CommandError(f"{error.filename}: {error.strerror}") from error
+        finally:
+            progress.finish()
+        counts = release.manifest["counts"]
+        self.stdout.write(
+            f"Release {release.number}: {counts['frames']} frames, {counts['annotations']} annotations: "
+            f"{releases.folder_of(release)}\nSHA-256 of manifest.json {release.manifest_digest}"
+        )

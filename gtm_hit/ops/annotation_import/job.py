@@ -1,0 +1,131 @@
+"""The import of annotations as a job, from what lies on the server or came through the browser."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Collection
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+from django.conf import settings
+from django.contrib.auth.models import User
+from django.core.files.uploadedfile import UploadedFile
+from django.utils.text import slugify
+
+from gtm_hit.formats.files import replacing
+from gtm_hit.formats.problems import FormatError
+from gtm_hit.models import Dataset, Job, Layer
+from gtm_hit.ops import exporting, jobs, uploads
+from gtm_hit.ops.annotation_import.findings import Kind
+from gtm_hit.ops.annotation_import.layers import (
+    TABLE,
+    WRITING,
+    AnnotationSource,
+    LayerReport,
+    import_annotations,
+)
+from gtm_hit.ops.annotation_import.placing import PLACING
+from gtm_hit.ops.annotation_import.reading import READERS, READING
+from gtm_hit.ops.import_jobs import told
+from gtm_hit.ops.importing.dataset import ImportFailed
+
+UNPACKING = "unpacking"
+SHARES = {UNPACKING: (0, 10), READING: (10, 35), TABLE: (35, 40), PLACING: (40, 60), WRITING: (60, 100)}
+
+
+class AnnotationImportError(jobs.JobError):
+    """What was asked for cannot be imported; says why."""
+
+
+def start(
+    dataset: Dataset,
+    source: uploads.Source,
+    kind: str,
+    layer: str,
+    drop: Collection[Kind] = (),
+    hidden: bool = False,
+    user: User | None = None,
+) -> Job:
+    """Queue the import of a source's files as the format `kind`; the one under way when it is the same."""
+    if kind not in READERS:
+        raise AnnotationImportError(f"{kind} is not a format that can be imported.")
+    if Layer.objects.filter(dataset=dataset, name=layer).exists():
+        raise AnnotationImportError(f"The layer {layer} is there already; choose another name.")
+    parameters = {
+        "source": source.key,
+        "format": kind,
+        "layer": layer,
+        "drop": sorted(drop),
+        "hidden": hidden,
+    }
+    return jobs.create_once(Job.Kind.IMPORT_ANNOTATIONS, dataset, parameters, user)
+
+
+def keep(upload: UploadedFile) -> uploads.Source:
+    """Put an uploaded file among the sources, a single one in an archive of its own.
+
+    Raises FormatError with all reasons when it cannot be kept.
+    """
+    name = Path(upload.name or "").name
+    if name.lower().endswith(".zip"):
+        return uploads.keep(upload)
+    stem = slugify(Path(name).stem)[:60] or "annotations"
+    path = settings.UPLOADS_ROOT / f"{stem}-{uuid4().hex[:8]}.zip"
+    with (
+        replacing(path) as stream,
+        zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive,
+        archive.open(f"{stem}.{slugify(Path(name).suffix)}", "w", force_zip64=True) as file,
+    ):
+        for chunk in upload.chunks():
+            file.write(chunk)
+    try:
+        uploads.checked_entries(path)
+    except FormatError as error:
+        path.unlink(missing_ok=True)
+        raise error.relative_to(settings.UPLOADS_ROOT) from error
+    return uploads.Source(f"uploads/{path.name}", path)
+
+
+def run(mine: jobs.Run) -> dict[str, Any]:
+    """The operation of an import job. A worker that takes it up again finds the layer it has made."""
+    if mine.job.result:
+        return mine.job.result
+    parameters = mine.job.parameters
+    dataset, source = mine.job.dataset, uploads.source(parameters["source"])
+    if dataset is None or source is None:
+        raise AnnotationImportError(f"{parameters['source']} is no longer there.")
+    report = exporting.shared_report(mine, SHARES)
+
+    def remember(found: LayerReport) -> None:
+        # In the layer's own transaction: there is never one its job does not know of.
+        Job.objects.filter(pk=mine.job.pk).update(result=_result(found))
+
+    try:
+        with uploads.unpacked(source, mine.job, lambda *steps: report(UNPACKING, *steps)) as folder:
+            wanted = AnnotationSource(
+                folder,
+                parameters["format"],
+                parameters["layer"],
+                parameters["hidden"],
+                [Kind(name) for name in parameters["drop"]],
+            )
+            found = import_annotations(dataset, wanted, report, lambda: mine.confirm(60, 100), remember)
+    except ImportFailed as error:
+        raise AnnotationImportError(told(error.problems, "nothing was imported")) from error
+    except FormatError as error:
+        problems = error.relative_to(settings.UPLOADS_ROOT).problems
+        raise AnnotationImportError(told(problems, "nothing was imported")) from error
+    if source.was_uploaded:
+        source.path.unlink(missing_ok=True)
+    return _result(found)
+
+
+def _result(found: LayerReport) -> dict[str, Any]:
+    return {
+        "layer": found.layer.name,
+        "frames": found.frames,
+        "people": found.people,
+        "annotations": found.annotations,
+        "dropped": found.dropped,
+    }
