@@ -1,6 +1,7 @@
 /**
  * Where the arrow keys lead. What Left means depends on the view the annotator looks at: it is the grid
- * direction that comes closest to Left on the screen there. The helper draws exactly what the keys do.
+ * direction that comes closest to Left on the screen there, unless the settings say "the axes of the ground". A
+ * held key goes on as it began. The helper draws exactly what the keys do.
  */
 import { YELLOW } from "./looks.js";
 import { drawArrow } from "./marks.js";
@@ -9,7 +10,7 @@ const SIGNS = { left: "←", right: "→", up: "↑", down: "↓" };
 const LENGTH = 34; // CSS pixels
 const REACH = 0.5; // metres along the ground from which an arrow's direction is taken
 
-/** The grid's own directions, for views that cannot tell (behind the camera). */
+/** The grid's own directions: for views that cannot tell (behind the camera), and for whoever prefers them. */
 const GROUND = {
   left: { columns: -1, rows: 0 },
   right: { columns: 1, rows: 0 },
@@ -19,13 +20,15 @@ const GROUND = {
 
 /** What each arrow key does to `annotation`: {left: {columns, rows}, right, up, down}. */
 export function arrowSteps(panes, annotation) {
+  if (panes.held?.steps) return panes.held.steps;
+  if (panes.settings.get("arrowAxes") === "ground") return GROUND;
   const seeing = [panes.active, ...panes.all].find((pane) => pane.view.box(annotation));
   return seeing?.view.axes(annotation) ?? GROUND;
 }
 
 /** Items for `Panes.addExtra`. */
 export function directionItems(panes, pane) {
-  const person = panes.store.selected();
+  const person = panes.people().get(panes.store.selection);
   if (!panes.options.directions || !person || !pane.view.box(person)) return [];
   const steps = arrowSteps(panes, person);
   const from = onPane(pane, panes.scene.metres(person.position));

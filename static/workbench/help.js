@@ -37,6 +37,9 @@ function mouseRows() {
     [gettext("Click on a box or a foot point"), gettext("select that person; again: the one behind")],
     [gettext("Shift + click"), gettext("a new person, also inside somebody's box")],
     [gettext("Right click"), gettext("move the selected person here")],
+    [gettext("Alt or Ctrl + click"), gettext("the selected person's feet in one more view: the best place for all clicked views")],
+    [gettext("Drag a foot, a box or a dot"), gettext("move that person; Escape leaves them where they were")],
+    [gettext("Drag the top of the selected box"), gettext("the person's height")],
     [gettext("Wheel"), gettext("zoom this view")],
     [gettext("Drag"), gettext("move the zoomed picture")],
   ];

@@ -1,6 +1,5 @@
 import { CameraView } from "./camera_view.js";
 import { element } from "./dom.js";
-import { LOOKS } from "./looks.js";
 import { MapView } from "./map_view.js";
 import { gettext } from "./messages.js";
 import { Emitter } from "./emitter.js";
@@ -23,7 +22,8 @@ export class Panes extends Emitter {
     this.settings = settings;
     this.options = options;
     this.zoomed = false;
-    this.ghost = null; // {annotation, look}: what a click would place
+    this.preview = null; // a person as an unfinished drag shows them
+    this.held = null; // {steps}: what the arrow keys do while one is held
     this._extras = [];
     this.element = element("div", { className: "panes" });
     this._scheduler = new Scheduler();
@@ -58,10 +58,17 @@ export class Panes extends Emitter {
     for (const pane of this.all) pane.markPicture();
   }
 
-  showGhost(ghost) {
-    if (ghost?.annotation === this.ghost?.annotation && ghost?.look === this.ghost?.look) return;
-    this.ghost = ghost;
+  /** A person drawn elsewhere, or larger, than the store says. */
+  showPreview(annotation) {
+    if (annotation === this.preview) return;
+    this.preview = annotation;
     this.markPeople();
+  }
+
+  /** The people of the open frame as they are drawn. */
+  people() {
+    const people = this.store.people();
+    return this.preview ? new Map(people).set(this.preview.person, this.preview) : people;
   }
 
   /** An option of display changed. */
@@ -114,10 +121,7 @@ export class Panes extends Emitter {
       this.markPeople();
       if (this.zoomed) this.zoom(after !== null);
     });
-    store.on("frame", () => {
-      this.showGhost(null);
-      this.markPictures();
-    });
+    store.on("frame", () => this.markPictures());
     images.on("picture", ({ frame, camera }) => {
       if (frame === store.current) this.all.find((pane) => pane.view.index === camera)?.markPicture();
     });
@@ -131,19 +135,13 @@ export class Panes extends Emitter {
         return panes.store.current;
       },
       get people() {
-        return panes.store.people();
+        return panes.people();
       },
       get selection() {
         return panes.store.selection;
       },
-      extras: (pane) => [...this._ghostItems(pane), ...this._extras.flatMap((extra) => extra(pane))],
+      extras: (pane) => this._extras.flatMap((extra) => extra(pane)),
     };
-  }
-
-  _ghostItems(pane) {
-    if (!this.ghost || !pane.view.box(this.ghost.annotation)) return [];
-    const { annotation, look } = this.ghost;
-    return [{ ...pane.view.item(annotation, LOOKS[look], pane.transform, this.options), id: "ghost" }];
   }
 }
 

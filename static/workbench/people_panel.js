@@ -1,5 +1,5 @@
 import { asList } from "./annotation.js";
-import { element } from "./dom.js";
+import { element, setText } from "./dom.js";
 import { gettext, ngettext } from "./messages.js";
 
 /** The list of people in the frame: number, state in words, in how many views they are seen. */
@@ -49,15 +49,17 @@ export class PeoplePanel {
 
   _makeRow(person) {
     const state = element("span", { className: "state" });
+    const size = element("span", { className: "size", title: gettext("own height") });
     const views = element("span", { className: "views" });
     const node = element(
       "li",
       { role: "option", onclick: () => this._select(person) },
       element("span", { className: "number" }, String(person)),
       state,
+      size,
       views,
     );
-    return { node, state, views, shown: null, selected: null };
+    return { node, state, size, views, shown: null, selected: null };
   }
 
   _place(node, index) {
@@ -71,6 +73,7 @@ export class PeoplePanel {
       row.node.dataset.state = one.state;
       const state = carried ? gettext("carried over") : gettext("validated");
       if (row.state.textContent !== state) row.state.textContent = state;
+      setText(row.size, one.height === null ? "" : gettext("{height} m", { height: one.height.toFixed(2) }));
       const seen = this.scene.seenBy(one);
       const views = ngettext("{n} view", "{n} views", seen);
       if (row.views.textContent !== views) row.views.textContent = views;

@@ -3,10 +3,12 @@ import { contains } from "./regions.js";
 const FOOT = 9; // CSS pixels around a foot point that mean the foot
 const STILL = 4; // CSS pixels a pointer may wander during a click
 const AGAIN = 6; // CSS pixels: a click here again means the person behind
+const EDGE = 5; // CSS pixels around the top of the selected box that mean the top
+const TALL = 30; // CSS pixels a box must have for its top to be taken hold of
 
 /**
- * Pointer events of the panes, as intents: `place`, `select`, `moveHere`, `hover`, `leave`. Wheel and drag
- * change a pane's pan and zoom directly.
+ * Pointer events of the panes, as intents: `place`, `select`, `moveHere`, `sight`, `hover`, `leave`, and a drag of
+ * a person (`beginDrag`, `drag`, `drop`, `cancelDrag`). Wheel and other drags change a pane's pan and zoom directly.
  */
 export class Pointer {
   constructor(panes, intents) {
@@ -35,13 +37,22 @@ export class Pointer {
     return [...feet, ...inside];
   }
 
+  /** What a drag from here takes hold of: {person, part}, or null for the picture. The selected one comes first. */
+  grip(pane, at) {
+    const selected = this._panes.store.selected();
+    if (selected && onTop(pane, selected, at)) return { person: selected, part: "top" };
+    const found = this.pick(pane, at);
+    const person = found.find((one) => one === selected) ?? found[0];
+    return person ? { person, part: "foot" } : null;
+  }
+
   _attach(pane) {
     const { element } = pane;
     element.addEventListener("pointerenter", () => this._panes.activate(pane));
     element.addEventListener("pointerdown", (event) => this._onDown(pane, event));
     element.addEventListener("pointermove", (event) => this._onMove(pane, event));
     element.addEventListener("pointerup", (event) => this._onUp(pane, event));
-    element.addEventListener("pointercancel", () => (this._press = null));
+    element.addEventListener("pointercancel", () => this._forget(pane));
     element.addEventListener("pointerleave", () => this._intents.leave());
     element.addEventListener("contextmenu", (event) => this._onMenu(pane, event));
     element.addEventListener("wheel", (event) => this._onWheel(pane, event), { passive: false });
@@ -51,17 +62,17 @@ export class Pointer {
     if (event.target.closest("button") || !pane.transform) return;
     this._panes.activate(pane);
     if (event.button === 2) return;
-    this._press = { pane, x: event.clientX, y: event.clientY, last: event, dragged: false };
+    this._press = { pane, x: event.clientX, y: event.clientY, last: event, dragged: false, grip: this._gripOf(pane, event), holding: false };
     pane.element.setPointerCapture(event.pointerId);
   }
 
   _onMove(pane, event) {
     const press = this._press;
-    if (!press) return this._intents.hover(pane, pane.local(event), event);
+    if (!press) return this._hover(pane, event);
     if (press.pane !== pane) return;
-    press.dragged ||= Math.hypot(event.clientX - press.x, event.clientY - press.y) > STILL;
+    if (!press.dragged && Math.hypot(event.clientX - press.x, event.clientY - press.y) > STILL) this._beginDrag(press);
     if (!press.dragged) return;
-    pane.element.classList.add("dragging");
+    if (press.holding) return this._intents.drag(pane.local(event));
     pane.look(pane.transform.moved(event.clientX - press.last.clientX, event.clientY - press.last.clientY));
     press.last = event;
   }
@@ -70,12 +81,41 @@ export class Pointer {
     const press = this._press;
     this._press = null;
     pane.element.classList.remove("dragging");
+    if (press?.holding) return this._intents.drop();
     if (!press || press.pane !== pane || press.dragged || event.button !== 0) return;
     this._click(pane, event);
   }
 
+  /** Fingers pan: on glass nobody should be moved by accident. Shift and the other buttons mean the picture, too. */
+  _gripOf(pane, event) {
+    if (event.button !== 0 || event.pointerType === "touch" || event.shiftKey || otherView(event)) return null;
+    return this.grip(pane, pane.local(event));
+  }
+
+  _beginDrag(press) {
+    const { pane, grip, last } = press;
+    press.dragged = true;
+    press.holding = grip !== null && this._intents.beginDrag(pane, pane.local(last), grip.person, grip.part, last);
+    pane.element.classList.add("dragging");
+  }
+
+  _forget(pane) {
+    this._press = null;
+    pane.element.classList.remove("dragging");
+    this._intents.cancelDrag();
+  }
+
+  _hover(pane, event) {
+    if (!pane.transform) return;
+    const at = pane.local(event);
+    const grip = event.shiftKey ? null : this.grip(pane, at);
+    pane.element.dataset.grip = grip?.part ?? "";
+    this._intents.hover(pane, at, grip?.person ?? null);
+  }
+
   _click(pane, event) {
     const at = pane.local(event);
+    if (otherView(event)) return this._intents.sight(pane, at, event);
     const found = event.shiftKey ? [] : this.pick(pane, at);
     if (!found.length) {
       this._lastPick = null;
@@ -95,7 +135,8 @@ export class Pointer {
 
   _onMenu(pane, event) {
     event.preventDefault();
-    if (pane.transform && !event.target.closest("button")) this._intents.moveHere(pane, pane.local(event), event);
+    const controlClick = event.ctrlKey && event.button === 0; // how a Mac asks for a menu: it is a click of ours
+    if (pane.transform && !controlClick && !event.target.closest("button")) this._intents.moveHere(pane, pane.local(event), event);
   }
 
   _onWheel(pane, event) {
@@ -104,7 +145,7 @@ export class Pointer {
     const pixels = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? event.deltaY * 32 : event.deltaY;
     const { x, y } = pane.local(event);
     pane.look(pane.transform.zoomAt(Math.exp(-pixels / 400), x, y));
-    this._intents.hover(pane, { x, y }, event);
+    this._hover(pane, event);
   }
 }
 
@@ -113,4 +154,18 @@ function footDistance(pane, person, at) {
   if (!foot) return Infinity;
   const { x, y } = pane.transform.toPane(foot.x, foot.y);
   return Math.hypot(x - at.x, y - at.y);
+}
+
+/** The key held that says: the same person, seen from here too. Some desktops keep Alt for themselves. */
+function otherView(event) {
+  return event.altKey || event.ctrlKey || event.metaKey;
+}
+
+/** On the upper edge of a box in a camera's view, where the box is large enough to tell it from the rest. */
+function onTop(pane, person, at) {
+  const box = pane.view.index !== null && pane.view.box(person);
+  if (!box || (box.ymax - box.ymin) * pane.transform.scale < TALL) return false;
+  const { x: left, y: top } = pane.transform.toPane(box.xmin, box.ymin);
+  const { x: right } = pane.transform.toPane(box.xmax, box.ymin);
+  return Math.abs(at.y - top) <= EDGE && at.x >= left - EDGE && at.x <= right + EDGE;
 }

@@ -24,6 +24,7 @@ export function buildWorkbench(root, session, { mode, home }) {
   const settings = new Settings();
   const panes = new Panes({ scene, store, images, settings, options: startOptions() });
   panes.addExtra((pane) => directionItems(panes, pane));
+  settings.on("change", () => panes.markPeople(true));
   const notices = new Notices();
   const walk = new Walk({ ...session, notices, finish: () => finishAssignment({ ...session, walk, notices, home }) });
   const actions = new Actions({ ...session, settings, panes, notices, walk });

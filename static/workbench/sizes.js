@@ -1,0 +1,100 @@
+import { changed } from "./annotation.js";
+import { patch } from "./commands.js";
+import { gettext } from "./messages.js";
+
+const STEP = { height: 0.02, radius: 0.01 }; // metres
+const LIMITS = { height: [0.5, 2.5], radius: [0.05, 0.8] }; // metres; wheelchairs and prams included
+
+/** Height and width of people. Who gets a size of their own keeps it in all later frames. */
+export class Sizes {
+  constructor({ scene, store, history, guard, walk, notices }) {
+    Object.assign(this, { scene, store, history, guard, walk, notices });
+    this._loading = false;
+  }
+
+  /** Rows for the table of actions. */
+  table() {
+    return {
+      taller: () => this.step("height", 1),
+      shorter: () => this.step("height", -1),
+      wider: () => this.step("radius", 1),
+      narrower: () => this.step("radius", -1),
+      usualSize: () => this.reset(),
+    };
+  }
+
+  step(name, direction) {
+    const person = this.guard.selected();
+    if (!person) return;
+    const now = this.scene.cylinderOf(person)[name];
+    this.set(person, { [name]: allowed(name, (Math.round(now / STEP[name]) + direction) * STEP[name]) });
+  }
+
+  reset() {
+    const person = this.guard.selected();
+    if (person) this.set(person, { height: null, radius: null });
+  }
+
+  /** @param {{height?: number|null, radius?: number|null}} values metres; null: the dataset's cylinder */
+  async set(person, values) {
+    if (!(await this._laterFramesLoaded())) return;
+    const current = this.store.person(person.person);
+    if (!current) return;
+    this.history.run(resize(this.store, person.person, this._withDefaults(values)));
+    const { height, radius } = this.scene.cylinderOf(this.store.person(person.person));
+    const words = { person: person.person, height: height.toFixed(2), width: (2 * radius).toFixed(2) };
+    this.guard.say(this.guard.besideFoot(current), gettext("Person {person}: {height} m tall, {width} m wide", words));
+  }
+
+  /** The usual size is no size of one's own. */
+  _withDefaults(values) {
+    return Object.fromEntries(
+      Object.entries(values).map(([name, value]) => [name, Math.abs(value - this.scene.cylinder[name]) < 1e-6 ? null : value]),
+    );
+  }
+
+  /** Long layers are loaded in pieces; the later frames have to be there to be changed. */
+  async _laterFramesLoaded() {
+    const { store } = this;
+    const missing = () => store.numbers.slice(store.numbers.indexOf(store.current)).find((number) => !store.frame(number).loaded);
+    if (missing() === undefined) return true;
+    if (this._loading) return false;
+    this._loading = true;
+    this.notices.say(gettext("Loading the later frames: the person keeps this size in them"));
+    try {
+      for (let number = missing(); number !== undefined; number = missing()) await this.walk.loader.load(number, false);
+      return true;
+    } catch (error) {
+      this.notices.say(gettext("The later frames did not arrive: {error}", { error: error.message }));
+      return false;
+    } finally {
+      this._loading = false;
+    }
+  }
+}
+
+/** A size from this frame on, wherever the person occurs: one step to undo. */
+export function resize(store, person, values) {
+  const later = store.numbers.slice(store.numbers.indexOf(store.current));
+  const edits = later
+    .filter((number) => store.person(person, number))
+    .map((number) => ({ frame: number, person, after: changed(store.person(person, number), values) }));
+  return patch(store, gettext("change the size of person {person}", { person }), edits, { select: person, group: `size ${store.current} ${person}` });
+}
+
+/** The height (metres, whole centimetres) whose rectangle in a view ends at `top` (image pixels). */
+export function heightReaching(scene, view, person, top) {
+  let [low, high] = LIMITS.height;
+  while (high - low > 0.005) {
+    const middle = (low + high) / 2;
+    const box = view.box(changed(person, { height: middle }));
+    if (!box || box.ymin < top) high = middle; // too tall to be seen counts as too tall
+    else low = middle;
+  }
+  return allowed("height", Math.round(low * 100) / 100);
+}
+
+function allowed(name, metres) {
+  const [least, most] = LIMITS[name];
+  return Number(Math.min(Math.max(metres, least), most).toFixed(3));
+}
