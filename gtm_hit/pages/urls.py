@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-from gtm_hit.pages import batches, datasets, home, jobs, layers, work
+from gtm_hit.pages import batches, calibration, datasets, home, imports, jobs, layers, work
 
 urlpatterns: list[URLPattern | URLResolver] = [
     *home.urlpatterns,
@@ -10,5 +10,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *batches.urlpatterns,
     *layers.urlpatterns,
     *jobs.urlpatterns,
+    *imports.urlpatterns,
+    *calibration.urlpatterns,
     *work.urlpatterns,
 ]

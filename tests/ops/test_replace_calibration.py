@@ -91,7 +91,7 @@ def preview_back(dataset: Dataset, new: list[Camera]) -> dict:
 
 def test_the_worst_boxes_come_first_with_frame_person_and_view(dataset: Dataset) -> None:
     new = cameras()
-    new[2] = replace(new[2], tvec=new[2].tvec + [0.1, 0.0, 0.3])
+    new[2] = replace(new[2], tvec=np.add(new[2].tvec, [0.1, 0.0, 0.3]))
     seen = preview(dataset, new, no_progress)
     shifts = [moved["shift"] for moved in seen["worst"]]
     assert shifts == sorted(shifts, reverse=True) and shifts[0] == seen["cameras"][2]["max"]

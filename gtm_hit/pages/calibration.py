@@ -1,0 +1,175 @@
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from django import forms
+from django.conf import settings
+from django.contrib import messages
+from django.core.files.uploadedfile import UploadedFile
+from django.http import Http404, HttpRequest, HttpResponse
+from django.shortcuts import get_object_or_404, redirect, render
+from django.urls import path
+from django.utils.translation import gettext as _
+from django.utils.translation import gettext_lazy
+from django.views.decorators.http import require_http_methods, require_POST, require_safe
+
+from gtm_hit.formats.files import write_bytes
+from gtm_hit.formats.problems import FormatError
+from gtm_hit.geometry.camera import Camera
+from gtm_hit.models import Dataset, Job
+from gtm_hit.ops import overview, uploads
+from gtm_hit.ops.calibration import job as calibration_job
+from gtm_hit.ops.calibration.reading import read_replacement
+from gtm_hit.ops.calibration.replacing import ReplacementError
+from gtm_hit.ops.importing.calibrations import UNITS
+from gtm_hit.pages.access import StaffRequest, staff_only
+from gtm_hit.pages.datasets import summary_or_404
+from gtm_hit.pages.uploads import takes_uploads
+
+MOST_BYTES = 10_000_000
+ROWS_SHOWN = 20
+
+
+class CalibrationForm(forms.Form):
+    file = forms.FileField(label=gettext_lazy("cameras.json, or a zip of a folder of calibrations"))
+    tvec_unit = forms.ChoiceField(
+        label=gettext_lazy("Unit of tvec in XML and YAML"), choices=list(UNITS.items()), initial="m"
+    )
+
+    def clean_file(self) -> UploadedFile:
+        file: UploadedFile = self.cleaned_data["file"]
+        if (file.size or 0) > MOST_BYTES:
+            raise forms.ValidationError(
+                _("The file is larger than %(size)d MB.") % {"size": MOST_BYTES // 1_000_000}
+            )
+        return file
+
+
+@dataclass(frozen=True)
+class View:
+    """One camera's picture with the boxes before and after."""
+
+    name: str
+    width: int
+    height: int
+    image: str
+    before: list[tuple[int, int, int, int]]  # x, y, width, height
+    after: list[tuple[int, int, int, int]]
+    counts: dict[str, Any]
+
+
+@require_http_methods(["GET", "HEAD", "POST"])
+@takes_uploads
+def calibration(request: StaffRequest, slug: str) -> HttpResponse:
+    dataset = summary_or_404(slug).dataset
+    form = CalibrationForm(request.POST or None, request.FILES or None)
+    if request.method == "POST" and form.is_valid():
+        try:
+            cameras = _read(dataset, form.cleaned_data["file"], form.cleaned_data["tvec_unit"])
+        except FormatError as error:
+            for problem in error.problems:
+                form.add_error("file", str(problem))
+        else:
+            return redirect("job", pk=calibration_job.start(dataset, cameras, request.user).pk)
+    context = {
+        "section": "datasets",
+        "tab": "calibration",
+        "dataset": dataset,
+        "form": form,
+        "cameras": [
+            (row.name, row.width, row.height, row.calibrated.centre.tolist(), row.matrix, any(row.distortion))
+            for row in dataset.cameras.all()
+        ],
+        "jobs": _jobs().filter(dataset=dataset)[:ROWS_SHOWN],
+    }
+    return render(request, "staff/imports/calibration.html", context)
+
+
+@require_safe
+@staff_only
+def preview(request: HttpRequest, slug: str, pk: int) -> HttpResponse:
+    job = get_object_or_404(_jobs(), pk=pk, dataset__slug=slug)
+    if job.state != Job.State.DONE:
+        return redirect("job", pk=pk)
+    dataset = summary_or_404(slug).dataset
+    context = {
+        "section": "datasets",
+        "tab": "calibration",
+        "dataset": dataset,
+        "job": job,
+        "seen": job.result,
+        "views": _views(dataset, job.result),
+        "names": [each["name"] for each in job.result["cameras"]],
+    }
+    return render(request, "staff/imports/calibration_preview.html", context)
+
+
+@require_POST
+@staff_only
+def confirm(request: StaffRequest, slug: str, pk: int) -> HttpResponse:
+    job = get_object_or_404(_jobs(), pk=pk, dataset__slug=slug)
+    try:
+        calibration_job.confirm(job, request.user)
+    except ReplacementError as error:
+        messages.error(request, str(error))
+        return redirect("calibration-preview", slug=slug, pk=pk)
+    messages.success(request, _("The new calibration is in place."))
+    return redirect("dataset", slug=slug)
+
+
+def _jobs() -> Any:
+    return overview.jobs().filter(kind=Job.Kind.REPLACE_CALIBRATION)
+
+
+def _read(dataset: Dataset, file: UploadedFile, unit: str) -> list[Camera]:
+    """Cameras of an uploaded file; raises FormatError whose paths are seen from the upload."""
+    settings.UPLOADS_ROOT.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory(prefix=".calibration-", dir=settings.UPLOADS_ROOT) as name:
+        folder = Path(name)
+        try:
+            if (file.name or "").lower().endswith(".json"):
+                path = folder / "cameras.json"
+                write_bytes(path, file.read())
+            else:
+                archive, path = folder / "calibration.zip", folder / "calibration"
+                write_bytes(archive, file.read())
+                uploads.unpack(archive, path, lambda _done, _total: None)
+                path = uploads.dataset_folder(path)
+            return read_replacement(dataset, path, unit)
+        except FormatError as error:
+            raise error.relative_to(folder) from error
+
+
+def _views(dataset: Dataset, seen: dict[str, Any]) -> list[View]:
+    picture = seen["picture"]
+    rows = list(dataset.cameras.all())
+    if len(rows) != len(seen["cameras"]):
+        raise Http404(_("The dataset's cameras are others now."))
+    images = picture["images"] or [""] * len(rows)
+    return [
+        View(
+            row.name,
+            row.width,
+            row.height,
+            image,
+            [_sized(box) for box in picture["before"][index]],
+            [_sized(box) for box in picture["after"][index]],
+            seen["cameras"][index],
+        )
+        for index, (row, image) in enumerate(zip(rows, images, strict=True))
+    ]
+
+
+def _sized(box: list[int]) -> tuple[int, int, int, int]:
+    left, top, right, bottom = box
+    return left, top, right - left, bottom - top
+
+
+urlpatterns = [
+    path("datasets/<slug:slug>/calibration/", calibration, name="dataset-calibration"),
+    path("datasets/<slug:slug>/calibration/<int:pk>/", preview, name="calibration-preview"),
+    path("datasets/<slug:slug>/calibration/<int:pk>/confirm/", confirm, name="calibration-confirm"),
+]

@@ -1,0 +1,154 @@
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from gtm_hit.models import Dataset, Frame, Image, Job
+from gtm_hit.ops import import_jobs, jobs, uploads
+from gtm_hit.tasks import OPERATIONS
+from tests.archives import zipped
+from tests.dataset_folder import NAMES, VALUES, make_folder
+from tests.video_files import make_videos
+
+pytestmark = pytest.mark.django_db
+
+
+@pytest.fixture(autouse=True)
+def own_folders(settings: Any, tmp_path: Path) -> None:
+    settings.DATA_DIR = tmp_path / "data"
+    settings.MEDIA_ROOT = tmp_path / "media"
+    settings.TABLES_ROOT = tmp_path / "tables"
+    settings.INCOMING_ROOT = tmp_path / "incoming"
+    settings.UPLOADS_ROOT = tmp_path / "uploads"
+
+
+@pytest.fixture
+def archive(tmp_path: Path) -> uploads.Source:
+    """An uploaded archive whose dataset lies in a folder of its own."""
+    (tmp_path / "uploads").mkdir()
+    folder = make_folder(tmp_path / "square")
+    zipped(folder, tmp_path / "uploads" / "square.zip", below="Square v1")
+    shutil.rmtree(folder)
+    return uploads.sources()[0]
+
+
+def options(**changes: Any) -> dict[str, Any]:
+    return {"slug": "square", "values": dict(VALUES), **changes}
+
+
+def done(job: Job) -> Job:
+    jobs.run(job.pk, OPERATIONS)
+    return Job.objects.get(pk=job.pk)
+
+
+def test_an_uploaded_archive_becomes_a_dataset_and_goes(archive: uploads.Source, tmp_path: Path) -> None:
+    job = done(import_jobs.start_import(archive, options()))
+    assert (job.state, job.dataset) == (Job.State.DONE, Dataset.objects.get(slug="square"))
+    assert (job.result["frames"], job.result["images"], job.result["people"]) == (2, 6, 5)
+    assert list((tmp_path / "uploads").iterdir()) == []
+
+
+def test_a_folder_on_the_server_stays(tmp_path: Path) -> None:
+    folder = make_folder(tmp_path / "incoming" / "plaza")
+    job = done(import_jobs.start_import(uploads.sources()[0], options()))
+    assert job.state == Job.State.DONE and Frame.objects.count() == 2
+    assert (folder / "Image_subsets" / "C1").is_dir()
+
+
+def test_a_failed_import_lists_everything_and_keeps_the_upload(tmp_path: Path) -> None:
+    folder = make_folder(tmp_path / "square")
+    (folder / "Image_subsets" / "C1" / "00000005.png").unlink()
+    (folder / "calibrations" / "extrinsic" / "extr_C2.xml").write_text("nothing")
+    (tmp_path / "uploads").mkdir()
+    zipped(folder, tmp_path / "uploads" / "square.zip")
+    job = done(import_jobs.start_import(uploads.sources()[0], options()))
+    assert job.state == Job.State.FAILED
+    first, *problems = job.message.splitlines()
+    assert first == f"{len(problems)} problems; nothing was imported:" and len(problems) >= 2
+    assert any(line.startswith("calibrations/extrinsic/extr_C2.xml") for line in problems)
+    assert not Dataset.objects.exists() and job.dataset is None
+    assert [path.name for path in (tmp_path / "uploads").iterdir()] == ["square.zip"]
+
+
+def test_trying_again_uses_the_same_upload(archive: uploads.Source) -> None:
+    failed = done(import_jobs.start_import(archive, options(preset="multiviewx", values={"columns": 3})))
+    assert failed.state == Job.State.FAILED
+    again = jobs.retry(failed)
+    assert (again.pk, again.parameters) != (failed.pk, {}) and again.parameters == failed.parameters
+
+
+def test_an_import_of_something_gone_says_so(archive: uploads.Source) -> None:
+    job = import_jobs.start_import(archive, options())
+    archive.path.unlink()
+    assert done(job).message == "uploads/square.zip is no longer there."
+
+
+def test_a_second_press_finds_the_same_job(archive: uploads.Source) -> None:
+    assert import_jobs.start_import(archive, options()) == import_jobs.start_import(archive, options())
+
+
+def test_a_lost_worker_costs_nothing_but_time(archive: uploads.Source, tmp_path: Path) -> None:
+    job = import_jobs.start_import(archive, options())
+    assert jobs.claim(job.pk) is not None
+    (tmp_path / "uploads" / f"unpacked-{job.pk}-1" / "half").mkdir(parents=True)
+    Job.objects.update(state=Job.State.QUEUED)
+    assert done(job).attempts == 2
+    assert (Frame.objects.count(), Image.objects.count()) == (2, 6)
+
+
+def test_a_cancelled_import_leaves_nothing(
+    archive: uploads.Source, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(jobs, "SECONDS_BETWEEN_REPORTS", 0)
+    job = import_jobs.start_import(archive, options())
+    original = jobs.Run.report
+
+    def cancelling(self: jobs.Run, done: int, total: int, message: str = "") -> None:
+        if message.startswith("making images"):
+            jobs.cancel(job)
+        original(self, done, total, message)
+
+    monkeypatch.setattr(jobs.Run, "report", cancelling)
+    assert done(job).state == Job.State.CANCELLED
+    assert not Dataset.objects.exists()
+    assert [path.name for path in (tmp_path / "uploads").iterdir()] == ["square.zip"]
+    assert not list((tmp_path / "media").rglob("*.jpg"))
+
+
+# Videos
+
+
+@pytest.fixture
+def videos(tmp_path: Path) -> uploads.Source:
+    make_videos(tmp_path / "incoming" / "walk", 60)
+    return uploads.sources()[0]
+
+
+def start_videos(source: uploads.Source, **changes: Any) -> Job:
+    named = [import_jobs.VideoSource(name, Path(f"{name}.mp4"), 0.0) for name in NAMES]
+    return import_jobs.start_videos(source, options(), named, **changes)
+
+
+def test_videos_on_the_server_become_a_dataset(videos: uploads.Source) -> None:
+    job = done(start_videos(videos, start=0.5, until=1.5))
+    assert job.state == Job.State.DONE and job.dataset is not None
+    assert (job.result["frames"], job.result["images"]) == (3, 9)
+    assert list(Frame.objects.values_list("number", flat=True)) == [5, 10, 15]
+
+
+def test_suggested_videos_are_those_in_the_folder(videos: uploads.Source) -> None:
+    (videos.path / "notes.txt").touch()
+    assert uploads.videos(videos) == [Path(f"{name}.mp4") for name in NAMES]
+
+
+@pytest.mark.parametrize("path", ["../secret.mp4", "/secret.mp4", "link.mp4"])
+def test_videos_outside_the_folder_are_refused(videos: uploads.Source, tmp_path: Path, path: str) -> None:
+    shutil.copy(videos.path / "C1.mp4", tmp_path / "incoming" / "secret.mp4")
+    (videos.path / "link.mp4").symlink_to(tmp_path / "incoming" / "secret.mp4")
+    named = [import_jobs.VideoSource("C1", Path(path), 0.0)]
+    job = done(import_jobs.start_videos(videos, options(), named))
+    assert job.message == f"{path} does not lie in incoming/walk."
+    assert not Dataset.objects.exists()
