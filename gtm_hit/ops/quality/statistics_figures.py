@@ -48,6 +48,7 @@ def _people(found: LayerStatistics, ground: Coverage) -> str:
         x_label=_("people"),
         y_label=_("frames"),
         whole=True,
+        decimals=1,
     )
 
 
@@ -58,6 +59,7 @@ def _track_frames(found: LayerStatistics, ground: Coverage) -> str:
         x_label=_("annotated frames"),
         y_label=_("people"),
         whole=True,
+        decimals=1,
     )
 
 

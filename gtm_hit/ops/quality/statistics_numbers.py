@@ -65,8 +65,8 @@ def csv_lines(found: LayerStatistics, ground: Coverage) -> Iterator[Line]:
         for part, value in _distribution(getattr(summary, name)).items():
             yield name.replace("_", " "), part, value, "" if part == "count" else unit
     for cameras, count in enumerate(ground.counts.tolist()):
-        yield f"coverage, every {ground.every}. position", cameras, count, "positions"
-    yield f"coverage, every {ground.every}. position", "mean", ground.mean, "cameras"
+        yield f"coverage, one position in {ground.every}", cameras, count, "positions"
+    yield f"coverage, one position in {ground.every}", "mean", ground.mean, "cameras"
     yield from _series(found)
 
 

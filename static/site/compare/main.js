@@ -1,0 +1,58 @@
+import { Api } from "../../workbench/api.js";
+import { element } from "../../workbench/dom.js";
+import { Images } from "../../workbench/images.js";
+import { gettext } from "../../workbench/messages.js";
+import { Scene } from "../../workbench/scene.js";
+import { CompareStore } from "./store.js";
+import { buildViewer } from "./viewer.js";
+
+const root = document.getElementById("viewer");
+const { scene: base, truth, found, frames } = JSON.parse(document.getElementById("comparison").textContent);
+const { home, marks } = document.body.dataset;
+
+try {
+  await start();
+  root.dataset.ready = "true";
+} catch (error) {
+  console.error(error);
+  root.replaceChildren(
+    element(
+      "div",
+      { className: "start-problem", role: "alert" },
+      element("h1", {}, gettext("The comparison could not be shown")),
+      element("p", {}, error.message),
+      element("button", { type: "button", className: "main", onclick: () => window.location.reload() }, gettext("Try again")),
+      element("a", { href: home }, gettext("Back")),
+    ),
+  );
+}
+
+async function start() {
+  const api = new Api({ base, token: "", mode: "layer", csrf: "" });
+  const scene = new Scene(await api.scene());
+  const images = new Images(api, scene.frames);
+  const store = new CompareStore(frames);
+  if (window.location.hash) store.open(Number(window.location.hash.slice(1)));
+  const load = () => look(store, images);
+  store.on("frame", () => {
+    window.history.replaceState(null, "", `#${store.current}`);
+    load();
+  });
+  buildViewer(root, { store, scene, images, names: { truth, found }, home });
+  await load();
+}
+
+/** The frame looked at first, then those one key away. */
+async function look(store, images) {
+  const wanted = [store.current, store.neighbour(1), store.neighbour(-1), store.neighbour(1, store.inTime)];
+  images.want([...new Set(wanted)]);
+  for (const number of new Set(wanted)) {
+    if (!store.has(number)) store.put(number, await marksOf(number));
+  }
+}
+
+async function marksOf(number) {
+  const response = await fetch(marks.replace("/0/", `/${number}/`), { cache: "no-store" });
+  if (!response.ok || response.redirected) throw new Error(gettext("The server did not answer; load the page again."));
+  return (await response.json()).marks;
+}

@@ -1,0 +1,115 @@
+import { element, setText } from "../../workbench/dom.js";
+import { Layout } from "../../workbench/layout.js";
+import { gettext } from "../../workbench/messages.js";
+import { Panes } from "../../workbench/panes.js";
+import { Pointer } from "../../workbench/pointer.js";
+import { markItem } from "./marks.js";
+import { MarksPanel } from "./panel.js";
+
+/** The workbench's panes, with the marks of a comparison instead of one layer's people. */
+class ComparePanes extends Panes {
+  _model() {
+    return Object.defineProperty(super._model(), "people", { value: new Map() });
+  }
+}
+
+/**
+ * Builds the page inside `root`.
+ * @param {{store, scene, images, names: {truth: string, found: string}, home: string}} parts
+ */
+export function buildViewer(root, { store, scene, images, names, home }) {
+  const panes = new ComparePanes({ scene, store, images, options: startOptions() });
+  panes.addExtra((pane) => items(pane, store, panes.options.labels));
+  store.on("marks", () => panes.markPeople());
+  const choose = (key) => {
+    store.select(key);
+    panes.zoom(key !== null);
+  };
+  const actions = {
+    n: () => store.open(store.neighbour(1)),
+    p: () => store.open(store.neighbour(-1)),
+    ArrowRight: () => store.open(store.neighbour(1, store.inTime)),
+    ArrowLeft: () => store.open(store.neighbour(-1, store.inTime)),
+    Tab: () => choose(following(store)),
+    l: () => panes.set("labels", !panes.options.labels),
+    Escape: () => choose(null),
+  };
+  const panel = new MarksPanel(store, names, choose);
+  const stage = element("main", { className: "stage" });
+  root.replaceChildren(bar(store, actions, names, home), stage);
+  new Pointer(panes, pointerIntents(store));
+  new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
+  document.addEventListener("keydown", (event) => onKey(event, actions));
+  document.documentElement.addEventListener("themechange", () => panes.set("mapColours", mapColours()));
+  window.addEventListener("focus", () => images.retryAll());
+}
+
+/** Matched people first: mistakes are never hidden behind them. */
+function items(pane, store, labels) {
+  return store
+    .marks()
+    .map((mark) => markItem(pane, mark, mark.key === store.selection, labels))
+    .filter((item) => item !== null)
+    .reverse();
+}
+
+function following(store) {
+  const keys = store.marks().map(({ key }) => key);
+  return keys.length ? keys[(keys.indexOf(store.selection) + 1) % keys.length] : null;
+}
+
+/** A click chooses, a click on nobody lets go; nothing here can be moved. */
+function pointerIntents(store) {
+  const nothing = () => {};
+  return { place: () => store.select(null), select: (key) => store.select(key), moveHere: nothing, hover: nothing, leave: nothing };
+}
+
+function onKey(event, actions) {
+  if (event.ctrlKey || event.altKey || event.metaKey) return;
+  const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+  if (event.shiftKey || !(name in actions)) return;
+  event.preventDefault();
+  actions[name]();
+}
+
+function bar(store, actions, names, home) {
+  const place = element("span", { className: "place", role: "status" });
+  const show = () =>
+    setText(
+      place,
+      gettext("Frame {number} · {rank} of {count}, worst first", {
+        number: String(store.current).padStart(8, "0"),
+        rank: store.rank + 1,
+        count: store.numbers.length,
+      }),
+    );
+  store.on("frame", show);
+  show();
+  const button = (key, words) => element("button", { type: "button", onclick: () => actions[key]() }, words, " ", element("kbd", {}, key));
+  return element(
+    "header",
+    { className: "bar" },
+    element("a", { className: "home", href: home }, `← ${gettext("{found} against {truth}", names)}`),
+    button("p", gettext("Previous")),
+    place,
+    button("n", gettext("Next")),
+    element("span", { className: "gap" }),
+    element("span", { className: "left" }, gettext("← → in time · Tab next person · Esc whole view · wheel zooms")),
+    button("l", gettext("Labels")),
+  );
+}
+
+function startOptions() {
+  return { outline: false, directions: false, grid: false, labels: true, opacity: 1, mapColours: mapColours() };
+}
+
+function mapColours() {
+  const style = getComputedStyle(document.documentElement);
+  const value = (name) => style.getPropertyValue(name).trim();
+  return {
+    ground: value("--map-ground"),
+    weak: value("--map-weak"),
+    strong: value("--map-strong"),
+    cameras: value("--map-cameras").split(","),
+  };
+}
