@@ -135,7 +135,7 @@ def _top_of(look: Look) -> Look:
 def _pelvis(look: Look, pose: Pose, build: float) -> Part:
     stations = np.array([-0.06, -0.04, 0.06, 0.18, 0.3, 0.45, 0.56, 0.57])
     width, depth = _girth(look, build, np.maximum(stations, 0.0), 0.006)
-    scale = np.array([0.02, 0.55, 0.92, 1, 1, 1, 1, 0.3])
+    scale = np.array([0.02, 0.55, 0.92, 1, 0.97, 0.93, 0.9, 0.3])
     centres, left, front = _spine(pose, stations)
     return Part(
         loft(centres, left, front, width * scale, depth * scale, 2.2),

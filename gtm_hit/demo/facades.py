@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from gtm_hit.demo.arrays import Flags, Floats, Indices
 from gtm_hit.demo.ground import box_cover, stripes
 from gtm_hit.demo.light import linear
-from gtm_hit.demo.noise import cloudy
+from gtm_hit.demo.noise import cloudy, looked_up
 from gtm_hit.demo.scene import Hall, Scene, Terrace
 
 # From places (N,) along both sides and a sample's size: colours (N, 3) and which points exist (None: all).
@@ -77,6 +78,11 @@ class _Grain:
 
 def _index(metres: Floats, per_metre: float) -> Indices:
     return np.mod(metres * np.float32(per_metre), 512).astype(np.int32)
+
+
+def _smooth(texture: Floats, s: Floats, h: Floats, per_metre: float) -> Floats:
+    columns, rows = (np.mod(metres * np.float32(per_metre), 512) for metres in (s, h))
+    return looked_up(texture, columns, rows, cv2.BORDER_WRAP)
 
 
 def _steps(scene: Scene, grain: _Grain) -> list[Wall]:
@@ -282,10 +288,10 @@ def _greenery(scene: Scene) -> list[Wall]:
 
     def foliage(bottom: float, top: float, ragged: float, scale: float, tone: float) -> Paint:
         def paint(s: Floats, h: Floats, blur: Floats) -> tuple[Floats, Flags]:
-            mass = clumps[_index(h, 24 / scale), _index(s, 24 / scale)]
-            leaf = leaves[_index(h, 90 / scale), _index(s, 90 / scale)] / (1 + np.square(blur / 0.05))
-            skyline = top - bottom - ragged * (1.0 + clumps[7, _index(s, 16 / scale)])
-            exists = h + 0.12 * ragged * leaf + 0.6 * ragged * mass < skyline
+            mass = _smooth(clumps, s, h, 24 / scale)
+            leaf = _smooth(leaves, s, h, 90 / scale) / (1 + np.square(blur / 0.05))
+            skyline = top - bottom - ragged * (1.0 + _smooth(clumps, s, s * 0 + 0.3, 16 / scale))
+            exists = h + 0.3 * ragged * leaf + 0.6 * ragged * mass < skyline
             depth = np.clip(h / np.maximum(skyline, 0.1), 0, 1)
             light = tone * np.exp(0.26 * leaf + 0.42 * mass) * (0.55 + 0.75 * depth)
             colour = LEAF * light[:, None]
@@ -300,5 +306,5 @@ def _greenery(scene: Scene) -> list[Wall]:
         Wall(
             np.array([x - 0.9, south, 0.0]), NORTH, UP, north - south, 1.9, foliage(0, 1.75, 0.09, 1.0, 1.5)
         ),
-        Wall(np.array([x - 9, south, -6.0]), NORTH, UP, north - south, 13.0, foliage(-6, 5.6, 1.5, 4.0, 1.6)),
+        Wall(np.array([x - 9, south, -6.0]), NORTH, UP, north - south, 13.0, foliage(-6, 6.6, 1.7, 4.0, 1.6)),
     ]

@@ -57,7 +57,9 @@ def _rings(pose: Pose, swell: float) -> Floats:
     left, front, up = pose.face
     height = SKULL[:, 0] * (1 + swell / 0.11)
     centres = pose.head + height[:, None] * up + SKULL[:, 3:] * front
-    return loft(centres, left, front, SKULL[:, 1] + swell, SKULL[:, 2] + swell, 2.1, SECTORS)
+    width, depth = np.maximum(SKULL[:, 1:3].T + swell, 0.001)
+    width[[0, -1]] = depth[[0, -1]] = 0.001  # closed at the chin and at the crown
+    return loft(centres, left, front, width, depth, 2.1, SECTORS)
 
 
 def _skull(look: Look, pose: Pose) -> Part:

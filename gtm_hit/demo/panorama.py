@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from gtm_hit.demo.arrays import Floats
-from gtm_hit.demo.light import HAZE, linear
+from gtm_hit.demo.light import linear
 from gtm_hit.demo.noise import cloudy
 from gtm_hit.demo.scene import Scene
 
-ZENITH, HORIZON = np.array([0.30, 0.52, 0.98], np.float32), np.array([1.02, 1.10, 1.18], np.float32)
+ZENITH, HORIZON = np.array([0.30, 0.52, 0.98], np.float32), np.array([0.92, 1.10, 1.34], np.float32)
+AIR = np.array([0.62, 0.78, 1.0], dtype=np.float32)  # haze over the distance, bluer than that nearby
 HILL, ROOF, HOUSE, WOOD = linear("7f93a8"), linear("9c6d58"), linear("c9bda8"), linear("4f5d3c")
 
 
@@ -29,7 +30,7 @@ class Panorama:
         for share, reach, haze in ((1.0, 2.1, 0.86), (3.0, 1.2, 0.72)):
             ridge = reach * (0.62 + 0.22 * self.ridge[np.mod(turn * 2048 * share, 2048).astype(int)])
             hills = tilt < ridge
-            light[hills] = HILL * np.float32(0.6 * (1 - haze)) + HAZE * np.float32(haze * 0.93)
+            light[hills] = HILL * np.float32(0.6 * (1 - haze)) + AIR * np.float32(haze * 0.93)
         self._town(turn, tilt, light)
         return light
 
@@ -51,6 +52,6 @@ class Panorama:
             inside = tilt < top + gable * (self.houses[1, house] > 0.35)
             eaves = tilt < top - 0.05
             colour = np.where(eaves[:, None], HOUSE * (0.7 + 0.5 * self.houses[1, house])[:, None], ROOF)
-            light[inside] = (colour * (1 - haze) * 1.2 + HAZE * haze * 0.8)[inside]
+            light[inside] = (colour * (1 - haze) * 1.2 + AIR * haze * 0.8)[inside]
         wood = tilt < -5.2 + 0.8 * self.ridge[np.mod(turn * 16000, 2048).astype(int)]
-        light[wood] = WOOD * 0.9 + HAZE * 0.14
+        light[wood] = WOOD * 0.9 + AIR * 0.14

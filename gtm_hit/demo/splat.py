@@ -127,7 +127,7 @@ def _by_part(parts: tuple[Part, ...], values: Floats, shape: tuple[int, int]) ->
 
 
 def _samples(part: Part, values: Floats) -> tuple[Floats, Floats]:
-    """Places (N, 4) and colours (N, 3) of samples, from the places and light (R, S + 1, 7) of a part's points."""
+    """Places (N, 4) and colours (N, 3) of samples; values (R, S + 1, 7) are the points' places and light."""
     front = _front(values[..., 3])
     if front is None:
         return np.zeros((0, 4), np.float32), np.zeros((0, 3), np.float32)
