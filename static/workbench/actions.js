@@ -1,11 +1,10 @@
 import { carriedOf, asList } from "./annotation.js";
-import { copyPeople } from "./carry.js";
 import * as commands from "./commands.js";
 import { Dragging } from "./dragging.js";
 import { Ghost } from "./ghost.js";
 import { Guard } from "./guard.js";
 import { showHelp } from "./help.js";
-import { gettext, ngettext } from "./messages.js";
+import { gettext } from "./messages.js";
 import { Moving } from "./moving.js";
 import { showSettings } from "./settings_dialog.js";
 import { Sightings } from "./sightings.js";
@@ -33,6 +32,11 @@ export class Actions {
     this._table[id]?.(event);
   }
 
+  /** Actions of other topics, in the same form. */
+  use(table) {
+    Object.assign((this._table ??= this._makeTable()), table);
+  }
+
   _makeTable() {
     return {
       ...this.moving.table(),
@@ -45,7 +49,6 @@ export class Actions {
       nextCarried: () => this.selectCarried(),
       nextFrame: () => this.walk.next(),
       previousFrame: () => this.walk.previous(),
-      bring: () => this.bring(),
       reload: () => this.walk.reload(),
       save: () => this.save(),
       zoom: () => this.toggleZoom(),
@@ -140,16 +143,6 @@ export class Actions {
     if (!waiting.length) return this.notices.say(gettext("Nobody is yellow in this frame"));
     const next = waiting.find(({ person }) => person > (this.store.selection ?? -1)) ?? waiting[0];
     this.select(next.person);
-  }
-
-  bring() {
-    if (this.guard.refused()) return;
-    const before = this.store.neighbour(-1);
-    if (before === undefined) return this.notices.say(gettext("This is the first frame"));
-    const missing = copyPeople(this.store.people(before), { except: this.store.people(), origin: "copied" });
-    if (!missing.length) return this.notices.say(gettext("Everybody of the previous frame is here already"));
-    this.history.run(commands.bring(this.store, this.store.current, missing));
-    this.notices.say(ngettext("{n} person loaded from the previous frame", "{n} people loaded from the previous frame", missing.length));
   }
 
   async save() {

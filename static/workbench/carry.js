@@ -8,13 +8,6 @@ const BEFORE_LAST = 0.35; // share of the step before the last one; it evens out
 const FASTEST = 3; // m/s; faster than that nobody walked, somebody was mixed up
 const LOOK_BACK = 3; // frames a movement is read from
 
-/** The people of another frame at the same positions, to be looked at; `except` are already there. */
-export function copyPeople(people, { except = new Map(), origin = "carried" } = {}) {
-  return [...people.values()]
-    .filter((one) => !except.has(one.person))
-    .map((one) => annotation({ ...one, state: CARRIED, origin }));
-}
-
 /**
  * The people of the first source, moved on the way they walked; who has no known movement stays where he was.
  * Works forwards and backwards, and never puts two people on one position.

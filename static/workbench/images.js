@@ -36,6 +36,11 @@ export class Images extends Emitter {
     return picture;
   }
 
+  /** What is decoded already; asks for nothing. @returns {ImageBitmap|null} */
+  peek(frame, camera, size) {
+    return this._pictures.get(`${frame} ${camera} ${size}`)?.bitmap ?? null;
+  }
+
   /** Frames in order of importance; everything else may stop loading and be let go. */
   want(frames) {
     this._wanted = new Set(frames);

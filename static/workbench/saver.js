@@ -64,6 +64,11 @@ export class Saver extends Emitter {
     return edits;
   }
 
+  /** @returns {Set<number>} frames with edits the server has not acknowledged */
+  unsavedFrames() {
+    return new Set([...this._slots].filter(([, { edits }]) => edits > 0).map(([frame]) => frame));
+  }
+
   /** @returns {{kind: "saved"|"saving"|"offline"|"server"|"signed_out"|"conflict"|"refused"|"read_only", unsaved, …}} */
   status() {
     const unsaved = this.unsaved;

@@ -35,6 +35,20 @@ const TABLE = {
     group: "placing",
     label: () => gettext("Show what a click would place"),
   },
+  playSpeed: {
+    value: 2,
+    group: "time",
+    label: () => gettext("Frames are played"),
+    choices: () => [
+      [0.5, gettext("at half speed")],
+      [1, gettext("as fast as it happened")],
+      [2, gettext("twice as fast")],
+      [4, gettext("four times as fast")],
+    ],
+  },
+  pathsOnMap: { value: "selected", group: "time", label: () => gettext("Paths on the map"), choices: pathChoices },
+  pathsInViews: { value: "none", group: "time", label: () => gettext("Paths in the views"), choices: pathChoices },
+  filmstrip: { value: false },
 };
 
 const GROUPS = {
@@ -108,6 +122,14 @@ export function settingGroups() {
         .map(([name, row]) => ({ name, ...row })),
     }))
     .filter(({ rows }) => rows.length);
+}
+
+function pathChoices() {
+  return [
+    ["none", gettext("none")],
+    ["selected", gettext("of the selected person")],
+    ["all", gettext("of everybody")],
+  ];
 }
 
 function fits(row, value) {

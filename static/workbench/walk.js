@@ -6,6 +6,9 @@ import { between, isFilled } from "./keyframes.js";
 import { gettext, ngettext } from "./messages.js";
 import { nearestSide, withFreeNumbers } from "./sources.js";
 
+const AT_ONCE = 96; // light pictures kept at hand: a batch of ten frames with up to nine views
+const PLAYING = 8; // frames fetched ahead of a running film
+
 /**
  * Going through the frames. Leaving a frame forwards says it is done; a frame nobody has been to starts with
  * the people of the frames beside it, moved on the way they walked, yellow.
@@ -15,9 +18,18 @@ export class Walk {
     Object.assign(this, { scene, store, history, saver, images, loader, notices });
     this._finish = finish;
     this._busy = false;
+    this._looking = null; // the frame one scrubs to, while it is loaded
+    this._held = null; // who was selected before a frame without that person
+    this._ahead = 0;
+    this._around = 0;
     this._carried = new Set(); // frames people were carried into on this visit
     store.on("frame", () => this._prefetch());
     this._prefetch();
+  }
+
+  /** Whom one worked on before coming to a frame without that person; null otherwise. */
+  get held() {
+    return this.store.selection === null ? this._held : null;
   }
 
   get judging() {
@@ -44,6 +56,25 @@ export class Walk {
 
   jump(number) {
     return this._alone(() => this.open(number));
+  }
+
+  /** Only look: nobody is carried over, nothing is said to be done. The newest wish wins. */
+  async look(number) {
+    this._looking = number;
+    await this.loader.load(number, false);
+    if (this._looking === number) this._show(number);
+  }
+
+  /** While playing, more of what comes is fetched. */
+  lookAhead(on) {
+    this._ahead = on ? PLAYING : 0;
+    this._prefetch();
+  }
+
+  /** Frames on both sides that somebody wants to see. */
+  lookAround(reach) {
+    this._around = reach;
+    this._prefetch();
   }
 
   /** Take the server's newest state of this frame; edits not yet saved are saved first. */
@@ -83,10 +114,22 @@ export class Walk {
   /** Show a frame; whoever calls it has asked what has to be asked. */
   async open(number) {
     await this.loader.load(number, false);
-    const selected = this.store.selection;
-    this.store.open(number);
+    this._looking = null;
+    this._show(number);
     this.carryInto(number);
-    if (this.store.selection === null && selected !== null) this.store.select(selected);
+    this._selectAgain();
+  }
+
+  _show(number) {
+    this._held = this.store.selection ?? this._held;
+    this.store.open(number);
+    this._selectAgain();
+  }
+
+  /** Whom one works on stays selected, also after frames without that person. */
+  _selectAgain() {
+    if (this.store.selection === null && this._held !== null) this.store.select(this._held);
+    if (this.store.selection !== null) this._held = null;
   }
 
   /** @returns {Promise<boolean>} whether the frame may be left */
@@ -132,10 +175,17 @@ export class Walk {
     return answer === "nobody";
   }
 
+  /** Of a batch all pictures, nearest first: they will be needed. Of a long layer those one can come to next. */
   _prefetch() {
-    const { store } = this;
-    const wanted = [store.current, store.neighbour(1), store.neighbour(-1), store.neighbour(2)];
-    this.images.want(wanted.filter((number) => number !== undefined));
+    const { numbers, current } = this.store;
+    const index = numbers.indexOf(current);
+    const whole = numbers.length * this.scene.cameras.length <= AT_ONCE;
+    const [ahead, behind] = whole
+      ? [numbers.length, numbers.length]
+      : [Math.max(2, this._ahead, this._around), Math.max(1, this._around)];
+    const distance = (one) => (one < index ? index - one + 0.5 : one - index);
+    const near = numbers.map((_, one) => one).filter((one) => one >= index - behind && one <= index + ahead);
+    this.images.want(near.sort((one, other) => distance(one) - distance(other)).map((one) => numbers[one]));
   }
 
   /** A question that is open, or a frame that is loading, is not asked or loaded twice. */

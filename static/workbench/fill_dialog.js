@@ -1,0 +1,71 @@
+import { ask } from "./dialogs.js";
+import { element } from "./dom.js";
+import { extendEdits, fillEdits, keyframes } from "./keyframes.js";
+import { LOOKS } from "./looks.js";
+import { gettext, ngettext } from "./messages.js";
+import { pathMap } from "./path_map.js";
+
+/**
+ * Shows what can be filled in, before anything is.
+ * @param {number|null} person the selected one
+ * @returns {Promise<object[]|null>} the edits the annotator chose; empty: there is nothing to fill
+ */
+export async function chooseFill(store, scene, mapColours, person) {
+  const offers = offersFor(store, scene, person);
+  if (!offers.length) return [];
+  const answer = await ask({
+    title: person === null ? gettext("Fill in between keyframes") : gettext("Fill in person {person}", { person }),
+    body: [
+      ...offers.map((offer) => describe(store, offer)),
+      previewMap(store, scene, mapColours, offers[0].edits),
+      gettext("Who is filled in stays yellow until looked at. Ctrl + Z takes all of it back."),
+    ],
+    buttons: [
+      ...offers.map(({ id, label }, index) => ({ id, label, main: index === 0 })),
+      { id: "cancel", label: gettext("Fill nothing") },
+    ],
+  });
+  return offers.find(({ id }) => id === answer)?.edits ?? null;
+}
+
+/** @returns {{id, label, edits}[]} what there is to fill, the narrowest first */
+function offersFor(store, scene, person) {
+  const everybody = new Set(store.numbers.flatMap((number) => [...store.people(number).keys()]));
+  const own = person === null ? [] : fillEdits(store, scene, person);
+  const all = [...everybody].flatMap((one) => (one === person ? own : fillEdits(store, scene, one)));
+  const further = person === null ? [] : extendEdits(store, scene, person);
+  return [
+    { id: "between", edits: own, label: ngettext("Fill {n} frame", "Fill {n} frames", own.length) },
+    { id: "further", edits: [...own, ...further], label: gettext("Fill all frames of the batch"), skip: !further.length },
+    { id: "all", edits: all, label: gettext("Fill in everybody between keyframes"), skip: all.length === own.length },
+  ].filter(({ edits, skip }) => edits.length && !skip);
+}
+
+function describe(store, { id, edits }) {
+  const numbers = [...new Set(edits.map(({ frame }) => frame))].sort((one, other) => one - other);
+  const places = numbers.map((number) => store.numbers.indexOf(number) + 1).join(", ");
+  const sentence = {
+    between: () => gettext("On the straight line between the keyframes: frames {places}.", { places }),
+    further: () => gettext("And on, the way the person walks, to both ends of the batch: frames {places}.", { places }),
+    all: () =>
+      ngettext("Everybody between keyframes: {n} box in the frames {places}.", "Everybody between keyframes: {n} boxes in the frames {places}.", edits.length, { places }),
+  }[id]();
+  const finished = numbers.filter((number) => store.frame(number).done).length;
+  if (!finished) return element("p", { "data-offer": id }, sentence);
+  const again = ngettext("{n} of them is done now and will have to be looked at again.", "{n} of them are done now and will have to be looked at again.", finished);
+  return element("p", { "data-offer": id }, `${sentence} ${again}`);
+}
+
+function previewMap(store, scene, mapColours, edits) {
+  const people = [...new Set(edits.map(({ person }) => person))];
+  const paths = people.flatMap((person) => {
+    const filled = new Map(edits.filter((edit) => edit.person === person).map(({ frame, after }) => [frame, after.position]));
+    const kept = keyframes(store, person).map((number) => [number, store.person(person, number).position]);
+    const whole = [...filled, ...kept].sort(([one], [other]) => one - other).map(([, position]) => position);
+    return [
+      { positions: whole, look: LOOKS.carried },
+      ...kept.map(([, position]) => ({ positions: [position], look: LOOKS.validated })),
+    ];
+  });
+  return pathMap(scene, mapColours, paths, gettext("The paths with the filled in positions"));
+}

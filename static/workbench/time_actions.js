@@ -1,0 +1,167 @@
+import { CARRIED, changed } from "./annotation.js";
+import { freePosition, predictPeople } from "./carry.js";
+import * as commands from "./commands.js";
+import { ask } from "./dialogs.js";
+import { chooseFill } from "./fill_dialog.js";
+import { gettext, ngettext } from "./messages.js";
+import { sourcesOn, withFreeNumbers } from "./sources.js";
+import { nextTask } from "./todo.js";
+
+const PATHS = ["none", "selected", "all"];
+
+/** What an annotator does across frames: carry, copy, fill, look through, find what is left. */
+export class TimeActions {
+  constructor({ scene, store, history, saver, loader, settings, panes, notices, walk, playback }) {
+    Object.assign(this, { scene, store, history, saver, loader, settings, panes, notices, walk, playback });
+    this._asked = new Set(); // people in one frame only, shown once
+  }
+
+  /** Rows for the table of actions, by the ids of the key table. */
+  table() {
+    return {
+      bring: () => this.bring(-1),
+      bringNext: () => this.bring(1),
+      copyPrevious: () => this.copy(-1),
+      copyNext: () => this.copy(1),
+      fill: () => this.fill(),
+      play: () => this.playback.toggle(),
+      lookNext: () => this.look(1),
+      lookPrevious: () => this.look(-1),
+      nextTask: () => this.goToNextTask(),
+      pathsInViews: () => this.cyclePaths("pathsInViews"),
+      pathsOnMap: () => this.cyclePaths("pathsOnMap"),
+      filmstrip: () => this.settings.set("filmstrip", !this.settings.get("filmstrip")),
+    };
+  }
+
+  /** Everybody of the frame beside this one who is missing here, moved on the way he walked. */
+  async bring(direction) {
+    if (this._refused()) return;
+    const sources = await this._sources(direction);
+    if (!sources.length) return this._sayNobody(direction);
+    const { store, scene } = this;
+    const missing = predictPeople(scene.grid, scene.seconds(store.current), sources, { except: store.people(), origin: "copied" });
+    if (!missing.length) return this.notices.say(gettext("Everybody of that frame is here already"));
+    this.history.run(commands.bring(store, store.current, sources[0].outside ? withFreeNumbers(store, missing) : missing));
+    this.notices.say(ngettext("{n} person loaded", "{n} people loaded", missing.length));
+  }
+
+  /** One person exactly where he stands in the frame beside this one: the selected one, or whom one chooses. */
+  async copy(direction) {
+    if (this._refused()) return;
+    const [source] = await this._sources(direction);
+    if (!source) return this._sayNobody(direction);
+    const person = this._whomToCopy(source) ?? (await this._choose(source));
+    if (person === null) return;
+    if (person === "all") return this._copyAll(source);
+    const after = this._copied(source, source.people.get(person));
+    this.history.run(commands.copy(this.store, source.outside ? withFreeNumbers(this.store, [after])[0] : after));
+  }
+
+  async fill() {
+    if (this._refused()) return;
+    await this._loadAll();
+    const { store, scene, panes } = this;
+    const edits = await chooseFill(store, scene, panes.options.mapColours, store.selection ?? this.walk.held);
+    if (edits === null) return;
+    if (!edits.length) return this.notices.say(gettext("Nothing to fill: validate a person in two frames, with frames between them"));
+    this.history.run(commands.fill(store, edits));
+    this.notices.say(ngettext("{n} box filled in", "{n} boxes filled in", edits.length));
+  }
+
+  look(offset) {
+    const number = this.store.neighbour(offset);
+    if (number !== undefined) return this.walk.look(number);
+    this.notices.say(offset > 0 ? gettext("This is the last frame") : gettext("This is the first frame"));
+  }
+
+  async goToNextTask() {
+    const task = nextTask(this.store, this.walk.judging, this._asked);
+    if (!task) return this.notices.say(gettext("Nothing is left to do here"));
+    if (task.number !== this.store.current) await this.walk.jump(task.number);
+    if (task.person !== null) this.store.select(task.person);
+    if (task.kind === "single") {
+      this._asked.add(task.person);
+      this.notices.say(gettext("Person {person} is in this frame only – I fills in the other frames", { person: task.person }));
+    } else if (task.left === "empty") this.notices.say(gettext("Nobody is marked in this frame yet"));
+    else if (task.left === "open") this.notices.say(gettext("Everybody is validated – N says the frame is done"));
+  }
+
+  cyclePaths(name) {
+    const next = PATHS[(PATHS.indexOf(this.settings.get(name)) + 1) % PATHS.length];
+    this.settings.set(name, next);
+    this.notices.say({ none: gettext("Paths: none"), selected: gettext("Paths: of the selected person"), all: gettext("Paths: of everybody") }[next]);
+  }
+
+  async _sources(direction) {
+    const number = this.store.neighbour(direction);
+    if (number !== undefined) await this.loader.load(number, false);
+    return sourcesOn(this.store, this.scene, this.store.current, direction);
+  }
+
+  _whomToCopy({ people }) {
+    const person = this.store.selection ?? this.walk.held;
+    return people.has(person) ? person : null;
+  }
+
+  async _choose({ number, people }) {
+    const missing = [...people.keys()].filter((person) => !this.store.person(person));
+    if (!missing.length) {
+      this.notices.say(gettext("Everybody of that frame is here already"));
+      return null;
+    }
+    const answer = await ask({
+      title: gettext("Whom to copy from frame {place}?", { place: this._placeOf(number) }),
+      body: gettext("People of that frame who are missing here:"),
+      buttons: [
+        ...missing.map((person) => ({ id: String(person), label: String(person) })),
+        { id: "all", label: gettext("All of them"), main: true },
+      ],
+    });
+    return answer === null || answer === "all" ? answer : Number(answer);
+  }
+
+  _copyAll(source) {
+    const { store } = this;
+    const missing = [...source.people.values()].filter(({ person }) => !store.person(person));
+    const taken = new Set([...store.people().values()].map(({ position }) => position));
+    const copies = missing.map((one) => {
+      const after = this._copied(source, one, taken);
+      taken.add(after.position);
+      return after;
+    });
+    this.history.run(commands.bring(store, store.current, source.outside ? withFreeNumbers(store, copies) : copies));
+  }
+
+  _copied(source, one, taken = this._takenBeside(one.person)) {
+    const position = freePosition(this.scene.grid, this.scene.metres(one.position), taken);
+    return changed(one, { position, state: CARRIED, origin: "copied" });
+  }
+
+  _takenBeside(except) {
+    const others = [...this.store.people().values()].filter(({ person }) => person !== except);
+    return new Set(others.map(({ position }) => position));
+  }
+
+  /** Of a long layer only a piece is there; between its ends nothing may be missing. */
+  async _loadAll() {
+    const { numbers } = this.store;
+    const loaded = numbers.map((number) => this.store.frame(number).loaded);
+    for (let index = loaded.indexOf(true); index <= loaded.lastIndexOf(true); index += 1) await this.loader.load(numbers[index], false);
+  }
+
+  _placeOf(number) {
+    const index = this.store.numbers.indexOf(number);
+    return index < 0 ? number : index + 1;
+  }
+
+  _sayNobody(direction) {
+    this.notices.say(direction < 0 ? gettext("Nobody is marked before this frame") : gettext("Nobody is marked after this frame"));
+  }
+
+  _refused() {
+    if (this.saver.readOnly === null) return false;
+    this.notices.say(gettext("Read-only: {reason}", { reason: this.saver.readOnly }));
+    return true;
+  }
+}

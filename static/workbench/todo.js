@@ -1,0 +1,46 @@
+/** What is left to do, and where. Pure: reads the store, changes nothing. */
+import { carriedOf } from "./annotation.js";
+
+/** Why a frame is not finished: "yellow", "empty", "open" (nobody said it is done), or null. */
+export function leftIn(store, number, judging) {
+  const { people, done, nobody } = store.frame(number);
+  if (carriedOf(people).length) return "yellow";
+  if (!people.size && !nobody) return "empty";
+  return judging && !done ? "open" : null;
+}
+
+/**
+ * The next thing: a yellow person further down in this frame, then the next frame with something left, around
+ * to the first ones, then somebody who is in one frame only.
+ * @param {Set<number>} asked people in one frame only who were shown already: that can be right
+ * @returns {{kind: "person"|"frame"|"single", number, person: number|null, left: string|null} | null}
+ */
+export function nextTask(store, judging, asked = new Set()) {
+  const here = carriedOf(store.people()).find(({ person }) => person > (store.selection ?? -1));
+  if (here) return { kind: "person", number: store.current, person: here.person, left: "yellow" };
+  const index = store.numbers.indexOf(store.current);
+  const around = [...store.numbers.slice(index + 1), ...store.numbers.slice(0, index + 1)];
+  for (const number of around) {
+    const left = leftIn(store, number, judging);
+    const [first] = carriedOf(store.people(number));
+    if (left === "yellow") return { kind: "person", number, person: first.person, left };
+    if (left && number !== store.current) return { kind: "frame", number, person: null, left };
+  }
+  const single = singles(store).find(({ person }) => !asked.has(person));
+  if (single) return { kind: "single", ...single, left: null };
+  const left = leftIn(store, store.current, judging);
+  return left ? { kind: "frame", number: store.current, person: null, left } : null;
+}
+
+/** People in exactly one frame although somebody is marked in the frames beside it. */
+export function singles(store) {
+  const seen = new Map();
+  for (const number of store.numbers) {
+    for (const person of store.people(number).keys()) seen.set(person, [...(seen.get(person) ?? []), number]);
+  }
+  const worked = (number) => number === undefined || store.people(number).size > 0;
+  return [...seen]
+    .filter(([, numbers]) => numbers.length === 1 && store.numbers.length > 1)
+    .map(([person, [number]]) => ({ person, number }))
+    .filter(({ number }) => worked(store.neighbour(1, number)) && worked(store.neighbour(-1, number)));
+}
