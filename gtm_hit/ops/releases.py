@@ -37,6 +37,7 @@ SHARES = {
     MEASURING: (52, 60),
     exporting.PACKING: (60, 100),
 }
+PARTS = ("README.md", "LICENSE", CHANGES, PROVENANCE, "manifest.json")  # worth having without the rest
 MOST_LICENCE = 100_000  # characters
 
 
@@ -166,6 +167,23 @@ def folder_of(release: Release) -> Path:
 
 def archive_of(release: Release) -> Path:
     return folder_of(release).with_name(f"{release.dataset.slug}-release-{release.number}.zip")
+
+
+def part_of(release: Release, name: str) -> Path | None:
+    """One of PARTS on this server's disk."""
+    path = folder_of(release) / name
+    return path if name in PARTS and path.is_file() else None
+
+
+def text_of(release: Release, name: str) -> str:
+    """A part's text; empty where the release's files are not on this server."""
+    path = part_of(release, name)
+    return path.read_text(encoding="utf-8") if path else ""
+
+
+def figure_of(release: Release, name: str) -> str:
+    path = folder_of(release) / "figures" / f"{name}.svg"
+    return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
 def _write(order: Order, content: Path, number: int, before: Release | None, report: Report) -> Manifest:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from django.contrib import messages
 from django.core.paginator import Paginator
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
@@ -8,6 +9,7 @@ from django.views.decorators.http import require_POST, require_safe
 
 from gtm_hit.models import Layer
 from gtm_hit.ops import exporting, overview
+from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, FORMATS
 from gtm_hit.pages.access import StaffRequest, staff_only
 from gtm_hit.pages.datasets import summary_or_404
 
@@ -25,6 +27,8 @@ def dataset_layers(request: HttpRequest, slug: str) -> HttpResponse:
         "dataset": summary.dataset,
         "frames": summary.frames,
         "page": page,
+        "formats": FORMATS,
+        "default_formats": DEFAULT_FORMATS,
     }
     return render(request, "staff/layers.html", context)
 
@@ -33,7 +37,12 @@ def dataset_layers(request: HttpRequest, slug: str) -> HttpResponse:
 @staff_only
 def export_layer(request: StaffRequest, slug: str, name: str) -> HttpResponse:
     layer = get_object_or_404(Layer.objects.select_related("dataset"), dataset__slug=slug, name=name)
-    return redirect("job", pk=exporting.start(layer, request.user).pk)
+    formats = request.POST.getlist("format") or DEFAULT_FORMATS
+    try:
+        return redirect("job", pk=exporting.start(layer, request.user, formats).pk)
+    except ValueError as error:
+        messages.error(request, str(error))
+        return redirect("dataset-layers", slug)
 
 
 urlpatterns = [

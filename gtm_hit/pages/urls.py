@@ -2,13 +2,28 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-from gtm_hit.pages import batches, calibration, compare, datasets, home, imports, jobs, layers, statistics, work
+from gtm_hit.pages import (
+    annotation_import,
+    batches,
+    calibration,
+    compare,
+    datasets,
+    home,
+    imports,
+    jobs,
+    layers,
+    releases,
+    statistics,
+    work,
+)
 
 urlpatterns: list[URLPattern | URLResolver] = [
     *home.urlpatterns,
     *datasets.urlpatterns,
     *batches.urlpatterns,
     *layers.urlpatterns,
+    *annotation_import.urlpatterns,
+    *releases.urlpatterns,
     *statistics.urlpatterns,
     *compare.urlpatterns,
     *jobs.urlpatterns,
