@@ -41,7 +41,7 @@ export class Timeline {
 
   _cell(number, index) {
     const mark = element("span", { className: "mark" });
-    const node = element("span", { className: "timeline-frame", "data-number": String(number) }, element("span", { className: "place" }, String(index + 1)), mark);
+    const node = element("span", { className: "timeline-frame", "data-number": String(number) }, element("span", { className: "ordinal" }, String(index + 1)), mark);
     this._cells.set(number, { node, mark, signature: "" });
     return node;
   }
