@@ -24,6 +24,17 @@ export class History extends Emitter {
     return this._undone.at(-1)?.label ?? null;
   }
 
+  /** What running a patch would really change: the patch with what follows from it. */
+  preview(wanted) {
+    return this._complete(wanted);
+  }
+
+  /** Frames the next undo (or redo) reaches into; they have to be loaded first. */
+  framesOf(direction) {
+    const patch = (direction === "undo" ? this._done : this._undone).at(-1);
+    return patch ? [...new Set([patch.frame, ...patch.edits.map(({ frame }) => frame)])] : [];
+  }
+
   run(wanted) {
     const patch = this._complete(wanted);
     this._store.apply(patch.edits);

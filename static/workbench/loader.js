@@ -25,6 +25,11 @@ export class Loader {
     else if (!this._store.frame(number).loaded) this._install((await this._api.frames(this._around(number))).frames);
   }
 
+  /** Make sure all these frames are there. */
+  async loadAll(numbers = this._store.numbers) {
+    for (const number of numbers) await this.load(number, false);
+  }
+
   /** A little before the frame too: it is where one goes back to, and where people are carried over from. */
   _around(number) {
     const { numbers } = this._store;

@@ -42,7 +42,12 @@ export class Store extends Emitter {
     return null;
   }
 
-  /** A person number nobody ever had in this layer. */
+  /** The next person number nobody ever had in this layer. */
+  get nextPerson() {
+    return this._nextPerson;
+  }
+
+  /** A person number nobody ever had in this layer, given away. */
   takePerson() {
     return this._nextPerson++;
   }
@@ -75,8 +80,10 @@ export class Store extends Emitter {
       if (edit.flags) Object.assign(frame, edit.flags.after);
       else {
         persons.add(edit.person);
-        if (edit.after) frame.people.set(edit.person, edit.after);
-        else frame.people.delete(edit.person);
+        if (edit.after) {
+          this.reservePerson(edit.person);
+          frame.people.set(edit.person, edit.after);
+        } else frame.people.delete(edit.person);
       }
     }
     if (frames.size) this._afterChange(frames, persons, source);
