@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+import numpy as np
 from playwright.sync_api import Locator, Page, expect
 from pytest_django.live_server_helper import LiveServer
 
@@ -110,8 +111,18 @@ def off_centre(camera: CalibratedCamera, position: int) -> float:
     return float(abs(u - camera.width / 2) + abs(v - camera.height / 2))
 
 
+def nearness(camera: CalibratedCamera, position: int) -> float:
+    """Pixels a patch of ground covers: how exactly a click can place somebody; none near the border."""
+    if off_centre(camera, position) == float("inf"):
+        return float("-inf")
+    x, y = GRID.metres([position])[0]
+    foot, beside, behind = project(camera, [[x, y, 0.0], [x + 0.1, y, 0.0], [x, y + 0.1, 0.0]])
+    # A low camera sees a step away from it as almost nothing, so the area counts, not the width.
+    return float(abs(np.linalg.det([beside - foot, behind - foot])))
+
+
 def best_view(position: int) -> int:
-    return min(streets.cameras(), key=lambda camera: off_centre(camera, position)).index
+    return max(streets.cameras(), key=lambda camera: nearness(camera, position)).index
 
 
 def well_seen(street: Street, frame: int = 0) -> tuple[int, int]:
