@@ -5,6 +5,7 @@ import { directionItems } from "./directions.js";
 import { element } from "./dom.js";
 import { Filmstrip } from "./filmstrip.js";
 import { finishAssignment } from "./finish.js";
+import { IdentityActions } from "./identity_actions.js";
 import { Keyboard } from "./keyboard.js";
 import { Layout } from "./layout.js";
 import { Notices } from "./notices.js";
@@ -33,6 +34,8 @@ export function buildWorkbench(root, session, { mode, home }) {
   const notices = new Notices();
   const walk = new Walk({ ...session, notices, finish: () => finishAssignment({ ...session, walk, notices, home }) });
   const actions = new Actions({ ...session, settings, panes, notices, walk });
+  const identity = new IdentityActions({ ...session, panes, notices, guard: actions.guard });
+  actions.use(identity.table());
   const playback = new Playback({ ...session, walk, settings });
   actions.use(new TimeActions({ ...session, settings, panes, notices, walk, playback }).table());
   new Paths(panes, settings);

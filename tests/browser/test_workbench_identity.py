@@ -50,7 +50,8 @@ def planned(page: Page, people: dict[int, dict[int, int]], choice: dict[str, Any
         history.run(found.patch);
         const after = look();
         history.undo();
-        return {{ after, both: found.both, undone: JSON.stringify(look()) === before, next: store.nextPerson }};
+        return {{ after, both: found.both, next: store.nextPerson,
+                 undone: JSON.stringify(look()) === before }};
         """,
     )
 
