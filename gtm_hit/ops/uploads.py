@@ -33,6 +33,7 @@ MOST_UNPACKED = 4  # times the largest archive; images do not shrink
 MOST_RATIO = 100  # an entry to its compressed bytes
 FREE_RATIO_BYTES = 1_000_000  # entries up to here may shrink as they like: an empty JSON list does
 BLOCK = 1 << 20
+VIDEO_SUFFIXES = {".mp4", ".m4v", ".mov", ".mkv", ".avi", ".mts", ".ts", ".mpg", ".mpeg", ".webm", ".wmv"}
 KEPT = timedelta(days=7)
 REGULAR = {0, stat.S_IFREG, stat.S_IFDIR}  # 0: made where files have no kind
 
@@ -77,6 +78,18 @@ def sources() -> list[Source]:
 def source(key: str) -> Source | None:
     """Only what is listed: no key can name a path of its own."""
     return next((each for each in sources() if each.key == key), None)
+
+
+def holds(source: Source, path: Path) -> bool:
+    """Whether a path seen from the source's folder is a file in there, links followed."""
+    found = (source.path / path).resolve()
+    return found.is_relative_to(source.path.resolve()) and found.is_file()
+
+
+def videos(source: Source) -> list[Path]:
+    """Video files in the source's folder, as they are named there."""
+    found = [path.name for path in source.path.iterdir() if path.suffix.lower() in VIDEO_SUFFIXES]
+    return [Path(name) for name in sorted(found, key=natural_key) if holds(source, Path(name))]
 
 
 def most_bytes() -> int:
