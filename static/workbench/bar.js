@@ -8,8 +8,8 @@ const THEME_KEY = "gtm-theme"; // shared with the ordinary pages
 
 /** The line on top: where one is, what is left, how it is saved, and a button for everything. */
 export class Bar {
-  constructor({ scene, store, saver, panes, walk, perform, home, signIn }) {
-    Object.assign(this, { scene, store, saver, panes, walk });
+  constructor({ scene, store, saver, panes, perform, home, signIn }) {
+    Object.assign(this, { scene, store, saver, panes });
     this._keys = new Map(keyTable().map(({ id, keys, label }) => [id, { keys, label }]));
     this._perform = perform;
     this.element = this._build(home, signIn);
@@ -35,7 +35,6 @@ export class Bar {
 
   _build(home, signIn) {
     this._place = element("strong", { className: "place" });
-    this._strip = element("nav", { className: "strip", "aria-label": gettext("Frames") });
     this._left = element("span", { className: "left" });
     this._mode = element("span", { className: "mode" });
     this._saved = element("span", { className: "save-words", role: "status" });
@@ -48,7 +47,6 @@ export class Bar {
       this._button("previousFrame", "◀", { "aria-label": gettext("Previous frame") }),
       this._place,
       this._button("nextFrame", "▶", { "aria-label": gettext("Next frame") }),
-      this._strip,
       this._left,
       element("span", { className: "gap" }),
       this._mode,
@@ -88,7 +86,6 @@ export class Bar {
     setText(this._place, gettext("Frame {place} of {n}", { place: index + 1, n: store.numbers.length }));
     this._place.title = gettext("number {number}", { number: store.current });
     setText(this._left, this._countWords());
-    this._updateStrip();
     const status = saver.status();
     const { text, link } = saveWords(status, saver.revision(store.current), this.scene.mode === "tutorial");
     setText(this._saved, text);
@@ -104,38 +101,6 @@ export class Bar {
     const waiting = carriedOf(people).length;
     const count = ngettext("{n} person", "{n} people", people.size);
     return waiting ? `${count} · ${ngettext("{n} yellow", "{n} yellow", waiting)}` : count;
-  }
-
-  /** One small button per frame: a batch fits; of a long layer only the surroundings are shown. */
-  _updateStrip() {
-    const { store } = this;
-    const index = store.numbers.indexOf(store.current);
-    const first = Math.max(0, Math.min(index - 5, store.numbers.length - 11));
-    const shown = store.numbers.slice(first, first + 11);
-    const signature = shown.map((number) => `${number}${store.frame(number).done}${number === store.current}`).join();
-    if (signature === this._signature) return;
-    this._signature = signature;
-    this._strip.replaceChildren(...shown.map((number, offset) => this._frameButton(number, first + offset + 1)));
-  }
-
-  _frameButton(number, place) {
-    const { done } = this.store.frame(number);
-    const state = done ? gettext("done") : gettext("not done");
-    return element(
-      "button",
-      {
-        type: "button",
-        className: done ? "done" : "",
-        "aria-current": number === this.store.current ? "true" : undefined,
-        "aria-label": gettext("Frame {place}, {state}", { place, state }),
-        title: gettext("Frame {place}, {state}", { place, state }),
-        onclick: (event) => {
-          this.walk.jump(number);
-          if (event.detail > 0) event.currentTarget.blur();
-        },
-      },
-      done ? "✓" : String(place),
-    );
   }
 }
 

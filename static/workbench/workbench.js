@@ -44,7 +44,7 @@ export function buildWorkbench(root, session, { mode, home }) {
     if (id !== "play") playback.stop();
     actions.perform(id, event);
   };
-  const bar = new Bar({ ...session, panes, walk, perform, home, signIn: signInAddress(mode, home) });
+  const bar = new Bar({ ...session, panes, perform, home, signIn: signInAddress(mode, home) });
   const panel = new PeoplePanel({ scene, store, select: (person) => actions.select(person) });
   const stage = element("main", { className: "stage" });
   const filmstrip = new Filmstrip({ ...session, walk, panes, settings });
