@@ -7,6 +7,7 @@ scene below DATA_DIR; later starts find them there. Ctrl-C stops everything it s
 from __future__ import annotations
 
 import argparse
+import hashlib
 import os
 import secrets
 import signal
@@ -39,9 +40,10 @@ def main() -> int:
     os.environ.setdefault("SECRET_KEY", kept_secret(data / "secret-key", 64))
     prepare()
     password = staff_password(data / "staff-password")
-    # A closed terminal or a service manager ends it as Ctrl-C does.
-    signal.signal(signal.SIGTERM, interrupt)
-    signal.signal(signal.SIGHUP, interrupt)
+    # A closed terminal or a service manager ends it as Ctrl-C does; a shell's background job starts
+    # with SIGINT ignored.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, interrupt)
     try:
         with running(web_command(options.host, options.port), worker_command(data)) as processes:
             if not wait_until_answering(options.host, options.port, processes[0]):
@@ -80,10 +82,28 @@ def prepare() -> None:
 
     print("Preparing database and static files …", flush=True)
     call_command("migrate", verbosity=0)
-    call_command("collectstatic", interactive=False, verbosity=0)
+    collect_static()
     if not Dataset.objects.filter(slug=settings.TUTORIAL_DATASET).exists():
         print("Making the demo scene (once) …", flush=True)
         call_command("makedemo", slug=settings.TUTORIAL_DATASET)
+
+
+def collect_static() -> None:
+    """Hash and compress the static files, unless they are those of the start before."""
+    from django.conf import settings
+    from django.contrib.staticfiles.finders import get_finders
+    from django.core.management import call_command
+
+    digest = hashlib.sha256()
+    for finder in get_finders():
+        for name, storage in finder.list([]):
+            file = Path(storage.path(name)).stat()
+            digest.update(f"{name} {file.st_size} {file.st_mtime_ns}\n".encode())
+    stamp = Path(settings.STATIC_ROOT) / "collected"
+    if stamp.exists() and stamp.read_text() == digest.hexdigest():
+        return
+    call_command("collectstatic", interactive=False, clear=True, verbosity=0)
+    stamp.write_text(digest.hexdigest())
 
 
 def staff_password(path: Path) -> str | None:
