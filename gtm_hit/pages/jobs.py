@@ -15,6 +15,7 @@ from gtm_hit.ops import jobs as job_ops
 from gtm_hit.pages.access import StaffRequest, staff_only
 
 ROWS_PER_PAGE = 50
+EXPORTS = {Job.Kind.EXPORT_LAYER, Job.Kind.MAKE_RELEASE}
 DIGESTS_SHOWN = 200
 
 
@@ -29,7 +30,7 @@ def job(request: HttpRequest, pk: int) -> HttpResponse:
     shown = job_or_404(pk)
     export = exporting.finished(shown)
     context = {
-        "section": "exports",
+        "section": "exports" if shown.kind in EXPORTS else "datasets",
         "job": shown,
         "percent": percent(shown),
         "export": export,

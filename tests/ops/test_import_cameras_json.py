@@ -11,6 +11,7 @@ import pytest
 from gtm_hit.formats.camera_json import load_taken, save_cameras
 from gtm_hit.models import Dataset
 from gtm_hit.ops.importing.dataset import ImportFailed, import_dataset
+from tests.conftest import REPOSITORY
 from tests.dataset_folder import MATRIX, NAMES, add_calibrations, cameras, make_folder, options
 
 pytestmark = pytest.mark.django_db
@@ -28,6 +29,14 @@ def folder(tmp_path: Path) -> Path:
     shutil.rmtree(root / "calibrations")
     save_cameras(root / "calibrations" / "cameras.json", cameras())
     return root
+
+
+def test_the_example_of_the_documentation_is_read(tmp_path: Path) -> None:
+    text = (REPOSITORY / "docs" / "calibration.md").read_text(encoding="utf-8")
+    path = tmp_path / "cameras.json"
+    path.write_text(text.split("```json")[1].split("```")[0])
+    (camera,) = load_taken(path)
+    assert (camera.name, camera.width, camera.distortion[0]) == ("C1", 1920, -0.432)
 
 
 def edit(path: Path, camera: int, **facts: object) -> None:
