@@ -161,7 +161,7 @@ export class Saver extends Emitter {
     const slot = this._slots.get(frame);
     if (slot.busy || slot.conflicts || slot.refused || this._readOnly !== null || slot.edits === 0) return;
     slot.sending ??= this._prepare(frame, slot);
-    if (!slot.sending) return;
+    if (!slot.sending) return this.emit("status"); // undone before it was ever sent: all is saved again
     slot.busy = true;
     this._keep(frame, slot);
     try {
@@ -179,7 +179,7 @@ export class Saver extends Emitter {
   _prepare(frame, slot) {
     const now = this._store.frame(frame);
     if (isSame(now, slot.base)) {
-      slot.edits = 0; // undone before it was ever sent
+      slot.edits = 0;
       this._journal.clear(frame);
       return null;
     }
