@@ -161,7 +161,8 @@ def marks(comparison: Comparison, number: int) -> list[Mark]:
     ]
     missed = [Mark(Kind.MISSED, row, None, None, None) for row in np.delete(truth_rows, first).tolist()]
     extra = [Mark(Kind.EXTRA, None, row, None, None) for row in np.delete(found_rows, second).tolist()]
-    pairs.sort(key=lambda mark: (mark.kind is not Kind.SWAPPED, -(mark.distance or 0.0)))
+    # Equal distances differ in their last bits: rounded, such pairs come by person.
+    pairs.sort(key=lambda mark: (mark.kind is not Kind.SWAPPED, -round(mark.distance or 0.0, 9), mark.truth))
     return [*missed, *extra, *pairs]
 
 

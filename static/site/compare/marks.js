@@ -28,7 +28,7 @@ export function markItem(pane, mark, selected, labels) {
     return { ...transform.toPane(x, y), side };
   });
   const box = view.index === null ? around(feet) : paneBox(view.box(shown[0]), transform);
-  const label = labels ? labelOf(mark) : "";
+  const label = labels || selected ? labelOf(mark, selected) : "";
   return {
     id: mark.key,
     what: mark,
@@ -42,11 +42,12 @@ export function markItem(pane, mark, selected, labels) {
   };
 }
 
-/** The number in the truth, else the found one; a kind that is a mistake is told in words as well. */
-export function labelOf({ kind, truth, found, before }) {
-  if (kind === "swapped") return `◆ ${truth.person}: ${before}→${found.person}`;
+/** The sign says the kind, so that labels stay short in a crowd; of a chosen mistake a word says it as well. */
+export function labelOf({ kind, truth, found, before }, selected) {
   const number = (truth ?? found).person;
-  return kind === "matched" ? String(number) : `${KINDS[kind].sign} ${number} ${KINDS[kind].words()}`;
+  if (kind === "matched") return String(number);
+  const numbers = kind === "swapped" ? `${before}→${found.person}` : number;
+  return `${KINDS[kind].sign} ${numbers}${selected ? ` ${KINDS[kind].words()}` : ""}`;
 }
 
 export function signOf(kind) {
