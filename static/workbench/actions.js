@@ -24,6 +24,7 @@ export class Actions {
     this.sizes = new Sizes(this);
     this.dragging = new Dragging(this);
     this.setControls = () => {};
+    this.afterMove = () => {}; // a right click has put the selected person where it is
   }
 
   /** @param {KeyboardEvent} [event] of a key; a button has none */
@@ -42,6 +43,7 @@ export class Actions {
       ...this.moving.table(),
       ...this.sizes.table(),
       validate: () => this.validate(),
+      validateAll: () => this.validateAll(),
       validateNext: () => this.validate() && this.selectCarried(),
       remove: () => this.remove(),
       nextPerson: () => this.selectNeighbour(1),
@@ -70,7 +72,7 @@ export class Actions {
   }
 
   moveHere(pane, at, event) {
-    this.moving.moveHere(pane, at, event);
+    if (this.moving.moveHere(pane, at, event)) this.afterMove();
   }
 
   sight(pane, at, event) {
@@ -120,14 +122,17 @@ export class Actions {
 
   validateAll() {
     const persons = carriedOf(this.store.people()).map(({ person }) => person);
-    if (persons.length && !this.guard.refused()) this.history.run(commands.validate(this.store, persons));
+    if (this.guard.refused()) return false;
+    if (persons.length) this.history.run(commands.validate(this.store, persons));
+    return true;
   }
 
   remove() {
     const person = this.guard.selected();
-    if (!person) return;
+    if (!person) return false;
     this.history.run(commands.remove(this.store, person.person));
     this.notices.say(gettext("Person {person} removed – Ctrl + Z brings it back", { person: person.person }));
+    return true;
   }
 
   selectNeighbour(offset) {

@@ -39,7 +39,7 @@ export class Bar {
     this._mode = element("span", { className: "mode" });
     this._saved = element("span", { className: "save-words", role: "status" });
     this._link = element("a", { href: signIn, target: "_blank", rel: "noopener", hidden: true });
-    this._toggles = ["zoom", "outline", "directions"].map((id) => this._button(id, toggleText(id), { "aria-pressed": "false" }));
+    this._toggles = ["round", "zoom", "outline", "directions"].map((id) => this._button(id, toggleText(id), { "aria-pressed": "false" }));
     return element(
       "header",
       { className: "bar" },
@@ -92,7 +92,7 @@ export class Bar {
     setText(this._link, link ?? "");
     this._link.hidden = !link;
     this._saved.parentElement.dataset.save = status.kind;
-    const on = { zoom: this.panes.zoomed, outline: this.panes.options.outline, directions: this.panes.options.directions };
+    const on = { round: this.panes.closeUp, zoom: this.panes.zoomed, outline: this.panes.options.outline, directions: this.panes.options.directions };
     for (const button of this._toggles) button.setAttribute("aria-pressed", String(Boolean(on[button.dataset.action])));
   }
 
@@ -105,7 +105,7 @@ export class Bar {
 }
 
 function toggleText(id) {
-  return { zoom: gettext("Zoom"), outline: gettext("Area"), directions: gettext("Arrows") }[id];
+  return { round: gettext("One by one"), zoom: gettext("Zoom"), outline: gettext("Area"), directions: gettext("Arrows") }[id];
 }
 
 function toggleTheme() {

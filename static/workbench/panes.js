@@ -9,6 +9,7 @@ import { focus } from "./transform.js";
 import { overlaps } from "./regions.js";
 
 const SHARE = 0.5; // of a pane's height for a zoomed person
+const [ABOVE_FEET, BELOW_FEET] = [0.25, 0.05]; // of a person's height, shown close up
 
 /**
  * All panes and what they have in common: options, the active view, zoom to the selected person. It listens to
@@ -22,6 +23,7 @@ export class Panes extends Emitter {
     this.settings = settings;
     this.options = options;
     this.zoomed = false;
+    this.closeUp = false; // zoom shows the feet instead of the whole person
     this.preview = null; // a person as an unfinished drag shows them
     this.held = null; // {steps}: what the arrow keys do while one is held
     this._extras = [];
@@ -89,11 +91,18 @@ export class Panes extends Emitter {
   }
 
   _zoomIn(pane) {
-    const person = this.store.selected();
-    const box = person && pane.view.box(person);
+    const box = this._shownPart(pane, this.store.selected());
     if (!box) return pane.fit();
     const grown = pane.view.index === null ? grow(box, 1.2) : box;
     pane.look(focus(grown, pane.room, SHARE, pane.view.largest));
+  }
+
+  /** What of a person zoom makes large: from above, and unless close up, everything. */
+  _shownPart(pane, person) {
+    const box = person && pane.view.box(person);
+    if (!box || !this.closeUp || pane.view.index === null) return box;
+    const height = box.ymax - box.ymin;
+    return { ...box, ymin: box.ymax - ABOVE_FEET * height, ymax: box.ymax + BELOW_FEET * height };
   }
 
   /** While zoomed, a person that is moved out of sight is brought back. */
@@ -101,7 +110,7 @@ export class Panes extends Emitter {
     const person = this.store.selected();
     if (!this.zoomed || !person) return;
     for (const pane of this.all) {
-      const box = pane.view.box(person);
+      const box = this._shownPart(pane, person);
       if (!box) continue;
       const { x: xmin, y: ymin } = pane.transform.toPane(box.xmin, box.ymin);
       const { x: xmax, y: ymax } = pane.transform.toPane(box.xmax, box.ymax);

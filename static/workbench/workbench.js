@@ -14,11 +14,16 @@ import { Paths } from "./paths.js";
 import { PeoplePanel } from "./people_panel.js";
 import { Playback } from "./playback.js";
 import { Pointer } from "./pointer.js";
+import { Round } from "./round.js";
 import { Settings } from "./settings.js";
 import { TimeActions } from "./time_actions.js";
 import { Timeline } from "./timeline.js";
 import { Tutorial } from "./tutorial.js";
 import { Walk } from "./walk.js";
+import { WarningActions } from "./warning_actions.js";
+import { warningItems } from "./warning_marks.js";
+import { Warnings } from "./warnings.js";
+import { WarningsPanel } from "./warnings_panel.js";
 
 /**
  * Builds the page over a session inside `root` and connects its parts.
@@ -38,6 +43,7 @@ export function buildWorkbench(root, session, { mode, home }) {
   actions.use(identity.table());
   const playback = new Playback({ ...session, walk, settings });
   actions.use(new TimeActions({ ...session, settings, panes, notices, walk, playback }).table());
+  actions.use(new Round({ store, panes, notices, walk, actions }).table());
   new Paths(panes, settings);
   const perform = (id, event) => {
     activity.note(store.current);
@@ -54,6 +60,7 @@ export function buildWorkbench(root, session, { mode, home }) {
   connectKeyboard(actions, bar, perform);
   new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
   if (mode === "tutorial") panel.element.prepend(new Tutorial({ ...session, home }).element);
+  else panel.element.append(warn(session, { settings, panes, notices, walk, actions, identity }));
   watch(session, panes);
   walk.carryInto(store.current);
 }
@@ -66,6 +73,17 @@ function connectKeyboard(actions, bar, perform) {
     if (on) bar.element.querySelector("a, button").focus();
     else document.activeElement?.blur();
   };
+}
+
+/** @returns {HTMLElement} the list of warnings; the same warnings are drawn in the panes */
+function warn(session, { settings, panes, notices, walk, actions, identity }) {
+  const { store } = session;
+  const warnings = new Warnings(session);
+  const acting = new WarningActions({ store, warnings, walk, notices, identity });
+  actions.use(acting.table());
+  panes.addExtra((pane) => warningItems(warnings, panes, pane));
+  warnings.on("change", () => panes.markPeople());
+  return new WarningsPanel({ store, warnings, settings, go: (one) => acting.go(one), join: (one) => acting.join(one) }).element;
 }
 
 /** Things that happen outside the page's own controls. */

@@ -1,0 +1,89 @@
+import { carriedOf } from "./annotation.js";
+import { gettext } from "./messages.js";
+
+/**
+ * Going round the yellow people one by one, close up: Enter for who stands right, one right click on the feet for
+ * who does not, and the views show the next one. After the last one they show everything again, for people
+ * without a box; whoever is placed then is shown close up, too.
+ */
+export class Round {
+  constructor({ store, panes, notices, walk, actions }) {
+    Object.assign(this, { _store: store, _panes: panes, _notices: notices, _walk: walk, _actions: actions });
+    this._passed = []; // people gone past in this frame, newest last
+    store.on("frame", () => (this._passed = []));
+    store.on("selection", ({ after }) => this.on && after !== null && !panes.zoomed && panes.zoom(true));
+    actions.afterMove = () => this.on && this._advance();
+  }
+
+  get on() {
+    return this._panes.closeUp;
+  }
+
+  /** Rows for the table of actions; those that exist already go on to the next person, too. */
+  table() {
+    const actions = this._actions;
+    return {
+      round: () => (this.on ? this._leave() : this._enter()),
+      roundBack: () => this._back(),
+      validateNext: () => actions.validate() && (this.on ? this._advance() : actions.selectCarried()),
+      validateAll: () => actions.validateAll() && this.on && this._advance(),
+      remove: () => actions.remove() && this.on && this._advance(),
+      nextFrame: () => this._nextFrame(),
+      escape: () => (this.on && !actions.dragging.active ? this._leave() : actions.escape()),
+    };
+  }
+
+  _enter() {
+    this._panes.closeUp = true;
+    if (this._store.selection === null) this._selectNext();
+    this._panes.zoom(true);
+    if (this._store.selection === null) this._sayAllSeen();
+  }
+
+  _leave() {
+    this._panes.closeUp = false;
+    this._panes.zoom(false);
+  }
+
+  _advance() {
+    if (this._store.selection !== null) this._passed.push(this._store.selection);
+    if (!this._selectNext()) this._showEverything();
+  }
+
+  /** @returns {boolean} whether somebody is yellow */
+  _selectNext() {
+    const waiting = carriedOf(this._store.people());
+    const from = this._store.selection ?? this._passed.at(-1) ?? -1;
+    const next = waiting.find(({ person }) => person > from) ?? waiting[0];
+    if (next) this._store.select(next.person);
+    return next !== undefined;
+  }
+
+  _showEverything() {
+    this._store.select(null);
+    this._panes.zoom(false);
+    this._sayAllSeen();
+  }
+
+  _sayAllSeen() {
+    this._notices.say(gettext("Nobody is yellow. Has somebody no box? Click their feet. N goes on, B goes back"));
+  }
+
+  /** The one before, validated as they are: for a click that was not good enough. */
+  _back() {
+    let person = this._passed.pop();
+    while (person !== undefined && !this._store.person(person)) person = this._passed.pop();
+    if (person === undefined) return this._notices.say(gettext("Nobody of this frame was looked at before"));
+    this._store.select(person);
+    this._panes.zoom(true);
+  }
+
+  async _nextFrame() {
+    const before = this._store.current;
+    await this._walk.next();
+    if (!this.on || this._store.current === before) return;
+    if (!carriedOf(this._store.people()).length) return this._showEverything();
+    this._store.select(null); // from the first one on, whoever was looked at last
+    this._selectNext();
+  }
+}
