@@ -1,17 +1,14 @@
 /** The browser's own database, as promises. Private windows may refuse it: then `open` throws. */
 const NAME = "ground-truth-marker";
-const VERSION = 1;
+const VERSION = 2;
 
 export const FRAMES = "frames"; // edits not yet acknowledged, one record per tab, layer and frame
-export const HISTORIES = "histories"; // undo and redo, one record per layer
+export const HISTORIES = "histories"; // undo and redo, one record per tab and layer
+export const DISMISSED = "dismissed"; // warnings the annotator has looked at, one record per layer
 
 export async function openDatabase() {
   const request = indexedDB.open(NAME, VERSION);
-  request.onupgradeneeded = () => {
-    const frames = request.result.createObjectStore(FRAMES, { keyPath: ["layer", "tab", "frame"] });
-    frames.createIndex("layer", "layer");
-    request.result.createObjectStore(HISTORIES, { keyPath: "layer" });
-  };
+  request.onupgradeneeded = ({ oldVersion }) => upgrade(request.result, oldVersion);
   return new Database(await answer(request));
 }
 
@@ -34,8 +31,8 @@ class Database {
     return this._run(store, "readonly", (objects) => objects.get(key));
   }
 
-  ofLayer(layer) {
-    return this._run(FRAMES, "readonly", (objects) => objects.index("layer").getAll(layer));
+  ofLayer(store, layer) {
+    return this._run(store, "readonly", (objects) => objects.index("layer").getAll(layer));
   }
 
   _run(store, mode, work) {
@@ -46,6 +43,15 @@ class Database {
       transaction.onabort = transaction.onerror = () => reject(transaction.error);
     });
   }
+}
+
+/** Edits nobody has yet are carried through every version; undo steps are not worth that. */
+function upgrade(database, from) {
+  const make = (name, keyPath) => database.createObjectStore(name, { keyPath });
+  if (from < 1) make(FRAMES, ["layer", "tab", "frame"]).createIndex("layer", "layer");
+  else database.deleteObjectStore(HISTORIES);
+  make(HISTORIES, ["layer", "tab"]).createIndex("layer", "layer");
+  make(DISMISSED, "layer");
 }
 
 function answer(request) {

@@ -1,4 +1,4 @@
-import { FRAMES, HISTORIES, openDatabase } from "./database.js";
+import { DISMISSED, FRAMES, HISTORIES, openDatabase } from "./database.js";
 import { joinTabs } from "./tabs.js";
 
 /**
@@ -45,7 +45,7 @@ export class Journal {
   /** Edits of this tab before its reload, and of tabs that are gone; oldest first. */
   async recover() {
     if (!this.keeps) return [];
-    const records = await this._database.ofLayer(this._layer);
+    const records = await this._database.ofLayer(FRAMES, this._layer);
     const mine = records.filter(({ tab }) => tab === this._tab.name || !this._tab.alive.has(tab));
     return mine.sort((one, other) => one.at - other.at);
   }
@@ -56,11 +56,27 @@ export class Journal {
   }
 
   writeHistory(dump) {
-    this._queue("history", () => this._database.put(HISTORIES, { layer: this._layer, ...dump() }));
+    this._queue("history", () =>
+      this._database.put(HISTORIES, { layer: this._layer, tab: this._tab.name, at: Date.now(), ...dump() }),
+    );
   }
 
-  async readHistory() {
-    return this.keeps ? this._database.get(HISTORIES, this._layer) : undefined;
+  /** Steps of this tab before its reload, else those of the tab that was closed or crashed last. */
+  async takeHistory() {
+    if (!this.keeps) return undefined;
+    const records = await this._database.ofLayer(HISTORIES, this._layer);
+    const mine = records.find(({ tab }) => tab === this._tab.name);
+    const left = records.filter(({ tab }) => tab !== this._tab.name && !this._tab.alive.has(tab));
+    await Promise.all(left.map(({ layer, tab }) => this._database.delete(HISTORIES, [layer, tab])));
+    return mine ?? left.sort((one, other) => other.at - one.at)[0];
+  }
+
+  writeDismissed(keys) {
+    this._queue("dismissed", () => this._database.put(DISMISSED, { layer: this._layer, keys }));
+  }
+
+  async readDismissed() {
+    return this.keeps ? ((await this._database.get(DISMISSED, this._layer))?.keys ?? []) : [];
   }
 
   _queue(name, work) {

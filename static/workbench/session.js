@@ -12,7 +12,7 @@ import { Store } from "./store.js";
 /**
  * Everything behind the page: what is annotated, how it is kept, and the pictures. Knows no page.
  * @typedef {{api: Api, scene: Scene, store: Store, history: History, saver: Saver, loader: Loader,
- *            images: Images, activity: Activity}} Session
+ *            journal: Journal, images: Images, activity: Activity}} Session
  */
 
 /** @param {{api: string, token: string, mode: string, csrf: string}} settings @returns {Promise<Session>} */
@@ -32,7 +32,7 @@ export async function openSession(settings) {
   if (!scene.editable) saver.makeReadOnly(scene.readOnlyReason);
   await recover(journal, saver, loader, history);
   store.open(first);
-  return { api, scene, store, history, saver, loader, images, activity };
+  return { api, scene, store, history, saver, loader, journal, images, activity };
 }
 
 /** Continue where one was. */
@@ -52,7 +52,11 @@ async function recover(journal, saver, loader, history) {
     saver.adopt(record);
     await journal.drop(record);
   }
-  const stored = await journal.readHistory();
-  if (stored) history.restore(stored);
-  history.on("change", () => journal.writeHistory(() => history.dump()));
+  const stored = await journal.takeHistory();
+  const keep = () => journal.writeHistory(() => history.dump());
+  if (stored) {
+    history.restore(stored);
+    keep(); // under this tab's name from now on
+  }
+  history.on("change", keep);
 }

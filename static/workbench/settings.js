@@ -49,6 +49,7 @@ const TABLE = {
   pathsOnMap: { value: "selected", group: "time", label: () => gettext("Paths on the map"), choices: pathChoices },
   pathsInViews: { value: "none", group: "time", label: () => gettext("Paths in the views"), choices: pathChoices },
   filmstrip: { value: false },
+  warningsOpen: { value: true },
 };
 
 const GROUPS = {
