@@ -1,10 +1,8 @@
 import { groundLine } from "../geometry/ground.js";
 import { annotation } from "./annotation.js";
 import { crossItem, lineItem, readoutItem } from "./hints_on_ground.js";
-import { LOOKS } from "./looks.js";
+import { CYAN, LOOKS } from "./looks.js";
 import { spotOn, spotWords } from "./spot.js";
-
-const LINE_COLOUR = "rgba(47, 227, 247, 0.55)";
 
 /**
  * What a click would place, before anything is placed: the cylinder in every view, the line on the ground
@@ -81,8 +79,8 @@ export class Ghost {
         `ghost-ray-${index}`,
         line.map(({ x, y }) => pane.transform.toPane(x, y)),
         pane.room,
-        LINE_COLOUR,
-        [2, 4],
+        CYAN,
+        [5, 4],
       ),
     );
   }
