@@ -57,7 +57,7 @@ def build() -> None:
         insert(placed(layer.pk, frames, 0 if name == "truth" else 3))
 
 
-def insert(rows: Iterator[tuple[object, ...]]) -> None:
+def insert(rows: Iterator[tuple[int | str, ...]]) -> None:
     """Past the models: a million of them would take longer than what is measured."""
     from django.db import connection, transaction
 
@@ -67,11 +67,11 @@ def insert(rows: Iterator[tuple[object, ...]]) -> None:
     with transaction.atomic(), connection.cursor() as cursor:
         cursor.executemany(
             f"INSERT INTO {Annotation._meta.db_table} ({columns}) VALUES (%s, %s, %s, %s, %s, %s)",
-            rows,
+            list(rows),
         )
 
 
-def placed(layer: int, frames: list[int], shift: int) -> Iterator[tuple[object, ...]]:
+def placed(layer: int, frames: list[int], shift: int) -> Iterator[tuple[int | str, ...]]:
     """People who walk along the grid, one position aside for the other layer."""
     for index, frame in enumerate(frames):
         for slot in range(PEOPLE):
@@ -81,11 +81,11 @@ def placed(layer: int, frames: list[int], shift: int) -> Iterator[tuple[object, 
 
 
 def report(name: str, work: Callable[[], object]) -> None:
-    start = time.perf_counter()
+    start, busy = time.perf_counter(), time.process_time()
     work()
-    took = time.perf_counter() - start
+    took, busy = time.perf_counter() - start, time.process_time() - busy
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    print(f"{name:<64} {took:7.2f} s   peak {peak:5.0f} MB", flush=True)
+    print(f"{name:<64} {took:7.2f} s ({busy:6.2f} s CPU)   peak {peak:5.0f} MB", flush=True)
 
 
 def main() -> None:

@@ -170,6 +170,9 @@ def compare_csv(request: HttpRequest, slug: str) -> HttpResponse:
 def compare_view(request: HttpRequest, slug: str) -> HttpResponse:
     asked = asked_for(request, slug)
     (truth, found), comparison = asked.required()
+    lines = frame_lines(comparison)
+    if not lines:
+        raise Http404(_("Nobody is in these frames, in either layer."))
     context = {
         "dataset": asked.context["dataset"],
         "query": asked.query,
@@ -177,7 +180,7 @@ def compare_view(request: HttpRequest, slug: str) -> HttpResponse:
             "scene": f"/api/v1/layers/{truth.pk}/",
             "truth": truth.name,
             "found": found.name,
-            "frames": frame_lines(comparison),
+            "frames": lines,
         },
     }
     return render(request, "staff/compare_view.html", context)

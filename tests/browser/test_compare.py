@@ -133,6 +133,12 @@ def test_choosing_a_person_zooms_to_it_and_escape_lets_go(viewer: Page) -> None:
     expect(row_of).to_have_attribute("aria-selected", "true")
 
 
+def test_a_server_that_refuses_is_told_in_words(viewer: Page) -> None:
+    viewer.route("**/compare/frames/**", lambda route: route.fulfill(status=403, body="{}"))
+    viewer.reload()
+    expect(viewer.get_by_role("alert")).to_contain_text("The server did not answer")
+
+
 def test_the_page_of_scores_leads_to_the_frame_clicked_on(
     staff_page: Page, live_server: LiveServer, layers: tuple[Layer, Layer]
 ) -> None:

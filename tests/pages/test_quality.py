@@ -112,6 +112,14 @@ def test_what_is_not_there_is_not_found(staff: Client, layers: tuple[Layer, Laye
     assert staff.get(address).status_code == 404
 
 
+def test_frames_without_anybody_have_scores_but_nothing_to_look_at(staff: Client, db: None) -> None:
+    dataset = make_dataset(frames=1)
+    for name in ("truth", "found"):
+        save(make_layer(dataset, name), dataset.frames.get(), [], nobody=True)
+    assert "Nobody is in these frames" in text(staff.get(f"/datasets/square/compare/?{BOTH}"))
+    assert staff.get(f"/datasets/square/compare/view/?{BOTH}").status_code == 404
+
+
 @pytest.mark.parametrize("page", ["statistics", "compare"])
 def test_a_dataset_without_layers_has_the_page(staff: Client, page: str) -> None:
     make_dataset()

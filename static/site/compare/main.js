@@ -2,6 +2,7 @@ import { Api } from "../../workbench/api.js";
 import { element } from "../../workbench/dom.js";
 import { Images } from "../../workbench/images.js";
 import { gettext } from "../../workbench/messages.js";
+import { Notices } from "../../workbench/notices.js";
 import { Scene } from "../../workbench/scene.js";
 import { CompareStore } from "./store.js";
 import { buildViewer } from "./viewer.js";
@@ -33,13 +34,14 @@ async function start() {
   const images = new Images(api, scene.frames);
   const store = new CompareStore(frames);
   if (window.location.hash) store.open(Number(window.location.hash.slice(1)));
-  const load = () => look(store, images);
+  const notices = new Notices();
   store.on("frame", () => {
     window.history.replaceState(null, "", `#${store.current}`);
-    load();
+    look(store, images).catch((error) => notices.say(error.message));
   });
   buildViewer(root, { store, scene, images, names: { truth, found }, home });
-  await load();
+  root.append(notices.element);
+  await look(store, images);
 }
 
 /** The frame looked at first, then those one key away. */
