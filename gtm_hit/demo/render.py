@@ -27,7 +27,7 @@ Progress = Callable[[int, int], None]
 
 JPEG_QUALITY = 92
 WORKERS = 2
-MALLOC_HABITS = {-3: 1 << 25, -1: 1 << 30, -2: 1 << 26}  # M_MMAP_THRESHOLD, M_TRIM_THRESHOLD, M_TOP_PAD
+MALLOC_HABITS = {-3: 1 << 25, -1: 1 << 28, -2: 1 << 25}  # M_MMAP_THRESHOLD, M_TRIM_THRESHOLD, M_TOP_PAD
 
 
 @dataclass(frozen=True)
