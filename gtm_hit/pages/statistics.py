@@ -72,7 +72,8 @@ def asked_for(request: HttpRequest, slug: str) -> Asked:
     if not choice.listed:
         return Asked(context, None, EVERY, _("This dataset has no layers yet."))
     if not form.is_valid():
-        return Asked(context, None, EVERY, _("There is no layer “%(name)s”.") % {"name": name or first})
+        problems = [str(error) for errors in form.errors.values() for error in errors]
+        return Asked(context, None, EVERY, " ".join(problems))
     return Asked(context, choice.get(form.cleaned_data["layer"]), form.cleaned_data["every"])
 
 

@@ -106,6 +106,8 @@ def test_without_a_choice_the_ground_truth_is_shown(staff: Client, layers: tuple
         f"/datasets/square/compare/view/?{BOTH}&frames=none",
         "/datasets/square/compare/view/",
         "/datasets/square/compare/frames/0/?a=truth",
+        "/datasets/square/statistics/?layer=truth&every=3",
+        f"/datasets/square/compare/?{BOTH}&start={10**30}",
     ],
 )
 def test_what_is_not_there_is_not_found(staff: Client, layers: tuple[Layer, Layer], address: str) -> None:
@@ -145,6 +147,11 @@ def test_a_frames_marks_tell_both_sides(staff: Client, layers: tuple[Layer, Laye
     for mark in found["marks"]:
         assert (mark["truth"] is None) == (mark["kind"] == "extra")
         assert (mark["found"] is None) == (mark["kind"] == "missed")
+
+
+def test_a_frame_that_was_not_compared_has_no_marks(staff: Client, layers: tuple[Layer, Layer]) -> None:
+    response = staff.get(f"/datasets/square/compare/frames/{10**30}/?{BOTH}")
+    assert response.json()["marks"] == []
 
 
 def test_a_layer_with_many_others_before_it_is_reached_by_its_name(
