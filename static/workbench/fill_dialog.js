@@ -13,11 +13,14 @@ import { pathMap } from "./path_map.js";
 export async function chooseFill(store, scene, mapColours, person) {
   const offers = offersFor(store, scene, person);
   if (!offers.length) return [];
-  const answer = await ask({
+  const map = element("div", { className: "path-map" });
+  const preview = ({ edits }) => map.replaceChildren(previewMap(store, scene, mapColours, edits));
+  preview(offers[0]);
+  const answered = ask({
     title: person === null ? gettext("Fill in between keyframes") : gettext("Fill in person {person}", { person }),
     body: [
       ...offers.map((offer) => describe(store, offer)),
-      previewMap(store, scene, mapColours, offers[0].edits),
+      map,
       gettext("Who is filled in stays yellow until looked at. Ctrl + Z takes all of it back."),
     ],
     buttons: [
@@ -25,6 +28,13 @@ export async function chooseFill(store, scene, mapColours, person) {
       { id: "cancel", label: gettext("Fill nothing") },
     ],
   });
+  // The map shows what the button does that one is about to press.
+  const about = ({ target }) => {
+    const offer = offers.find(({ id }) => id === target.closest("[data-answer]")?.dataset.answer);
+    if (offer) preview(offer);
+  };
+  for (const event of ["focusin", "pointerover"]) map.closest("dialog").addEventListener(event, about);
+  const answer = await answered;
   return offers.find(({ id }) => id === answer)?.edits ?? null;
 }
 

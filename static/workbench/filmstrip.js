@@ -155,7 +155,7 @@ export class Filmstrip {
 
   _paintHead(ctx, left, width, number, current) {
     const style = getComputedStyle(this.element);
-    ctx.fillStyle = current ? style.getPropertyValue("--accent") : style.color;
+    ctx.fillStyle = current ? style.outlineColor : style.color;
     ctx.font = `${current ? 700 : 400} 11px system-ui, 'DejaVu Sans', sans-serif`;
     ctx.textAlign = "center";
     ctx.textBaseline = "middle";

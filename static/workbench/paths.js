@@ -12,7 +12,6 @@ const ROOM = 6; // CSS pixels a line with its dots reaches beyond its points
 const STYLES = {
   validated: { dash: [], width: 1.5 },
   carried: { dash: [6, 4], width: 1.5 },
-  missing: { dash: [1.5, 4], width: 1 },
 };
 
 /** Frames around the open one in which a person is, in order: [{number, annotation}]. Pure. */
@@ -103,7 +102,9 @@ export class Paths {
       const [from, to] = [points[index - 1], points[index]];
       if (!from || !to) continue; // behind the camera
       const kind = kindOfStep(this.store, steps[index - 1], steps[index]);
-      drawPath(ctx, [from, to], { ...STYLES[kind], colour: selected ? CYAN : kind === "carried" ? YELLOW : WHITE });
+      const colour = selected ? CYAN : kind === "carried" ? YELLOW : WHITE;
+      if (kind === "missing") drawDotted(ctx, from, to, colour);
+      else drawPath(ctx, [from, to], { ...STYLES[kind], colour });
     }
     points.forEach((point, index) => point && drawDot(ctx, point, steps[index].annotation, selected));
   }
@@ -112,6 +113,18 @@ export class Paths {
 function placeOn(pane, annotation) {
   const foot = pane.view.foot(annotation);
   return foot && pane.transform.toPane(foot.x, foot.y);
+}
+
+/** Faint and without a rim: nobody said that the person went this way. */
+function drawDotted(ctx, from, to, colour) {
+  ctx.beginPath();
+  ctx.moveTo(from.x, from.y);
+  ctx.lineTo(to.x, to.y);
+  ctx.setLineDash([1.5, 5]);
+  ctx.lineWidth = 1.25;
+  ctx.strokeStyle = colour;
+  ctx.stroke();
+  ctx.setLineDash([]);
 }
 
 function drawDot(ctx, { x, y }, { state }, selected) {

@@ -11,11 +11,15 @@ export class Timeline {
   constructor({ store, saver, walk, playback, perform }) {
     Object.assign(this, { store, saver, walk, playback });
     this._cells = new Map();
+    this._changed = new Set();
+    this._unsaved = new Set();
     this._scrubbing = null; // the frame under the pointer
     this.element = this._build(perform);
-    for (const event of ["change", "frame"]) store.on(event, () => this._later());
+    store.on("change", ({ frames }) => this._later(frames));
+    store.on("frame", ({ before, after }) => this._later([before, after]));
     saver.on("status", () => this._later());
     playback.on("change", () => this._later());
+    this._later(store.numbers);
     this._update();
   }
 
@@ -88,7 +92,9 @@ export class Timeline {
     if (number !== undefined) this.walk.jump(number);
   }
 
-  _later() {
+  /** Of a long layer only the cells of changed frames are looked at: this runs for every step of a held key. */
+  _later(frames = []) {
+    for (const number of frames) this._changed.add(number);
     this._request ??= requestAnimationFrame(() => {
       this._request = null;
       this._update();
@@ -98,14 +104,16 @@ export class Timeline {
   _update() {
     const { store, playback } = this;
     const unsaved = this.saver.unsavedFrames();
-    for (const [number, cell] of this._cells) this._refresh(cell, number, unsaved.has(number));
+    for (const number of [...this._unsaved, ...unsaved]) this._changed.add(number);
+    for (const number of this._changed) this._refresh(this._cells.get(number), number, unsaved.has(number));
+    this._changed.clear();
+    this._unsaved = unsaved;
     setText(this._play, playback.playing ? "❚❚" : "▶");
     this._play.setAttribute("aria-pressed", String(playback.playing));
     this._frames.setAttribute("aria-valuenow", String(store.numbers.indexOf(store.current) + 1));
     this._frames.setAttribute("aria-valuetext", this._words(store.current, unsaved.has(store.current)));
   }
 
-  /** Only cells that changed are touched: this runs for every step of a held key. */
   _refresh(cell, number, unsaved) {
     const { state } = frameState(this.store.frame(number));
     const current = number === this.store.current;
