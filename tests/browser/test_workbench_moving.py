@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page
 
 from gtm_hit.geometry.camera import project
 from tests.browser.bench import Bench, best_view, metres_apart, well_seen
@@ -17,8 +17,9 @@ from tests.browser.test_workbench_modules import run
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
 
-def saved_again(opened: Bench, revision: int = 2) -> None:
-    expect(opened.page.locator(".save-words")).to_have_text(f"All saved · r{revision}")
+def all_saved(opened: Bench) -> None:
+    opened.painted()  # an edit shows as "Saving…" first
+    opened.saved()
 
 
 def marks_of(opened: Bench, view: str) -> str:
@@ -56,13 +57,13 @@ def test_dragging_a_foot_moves_its_person_in_one_step_to_undo(bench: Callable[..
     view = best_view(start)
     foot = opened.place_of(view, start)
     drag(opened.page, foot, moved(foot, 40, 15))
-    saved_again(opened)
+    all_saved(opened)
     (stored,) = opened.stored()
     x, y = opened.place_of(view, stored.position)
     assert (x, y) == pytest.approx(moved(foot, 40, 15), abs=2)
     assert opened.selected() == "1"
     opened.press("Control+z")
-    saved_again(opened, 3)
+    all_saved(opened)
     assert opened.stored()[0].position == start
 
 
@@ -75,7 +76,7 @@ def test_a_slow_drag_is_one_step_to_undo_too(bench: Callable[..., Bench]) -> Non
     opened.page.mouse.move(*moved(foot, 40, 0))
     opened.page.mouse.up()
     opened.press("Control+z")
-    opened.saved()
+    all_saved(opened)
     assert opened.stored()[0].position == start
 
 
@@ -90,7 +91,7 @@ def test_a_drag_shows_in_all_views_before_it_is_dropped(bench: Callable[..., Ben
     halfway = marks_of(opened, "map")
     opened.page.mouse.move(*moved(foot, 60, 10))
     assert len({before, halfway, marks_of(opened, "map")}) == 3
-    opened.saved()
+    all_saved(opened)
     assert opened.stored()[0].position == start
     opened.page.mouse.up()
 
@@ -105,7 +106,7 @@ def test_escape_during_a_drag_leaves_the_person_where_it_was(bench: Callable[...
     opened.page.mouse.up()
     assert opened.selected() == "1"
     opened.press("ArrowLeft", "Control+z")
-    opened.saved()
+    all_saved(opened)
     assert opened.stored()[0].position == start
 
 
@@ -116,7 +117,7 @@ def test_a_whole_box_is_dragged_by_the_ray_of_its_foot(bench: Callable[..., Benc
     foot = opened.place_of(view, start)
     body = moved(foot, 0, -16)
     drag(opened.page, body, moved(body, 30, 8))
-    saved_again(opened)
+    all_saved(opened)
     assert opened.place_of(view, opened.stored()[0].position) == pytest.approx(moved(foot, 30, 8), abs=2)
 
 
@@ -125,7 +126,7 @@ def test_a_dot_on_the_map_is_dragged(bench: Callable[..., Bench]) -> None:
     start = int(opened.street.truth[0][0])
     dot = on_map(opened, start)
     drag(opened.page, dot, moved(dot, 40, -10))
-    saved_again(opened)
+    all_saved(opened)
     assert on_map(opened, opened.stored()[0].position) == pytest.approx(moved(dot, 40, -10), abs=1)
 
 
@@ -137,7 +138,7 @@ def test_dragging_works_while_zoomed(bench: Callable[..., Bench]) -> None:
     opened.page.mouse.move(*body)
     opened.page.mouse.wheel(0, -600)  # e^1.5 times larger, with the body still under the pointer
     drag(opened.page, body, moved(body, 60, 0))
-    saved_again(opened)
+    all_saved(opened)
     shift = shift_in_pixels(view, start, opened.stored()[0].position)
     bounds = opened.pane(view).bounding_box()
     assert bounds is not None
@@ -160,7 +161,7 @@ def test_dragging_the_empty_ground_moves_the_picture_only(bench: Callable[..., B
     corner = (pane["x"] + pane["width"] - 30, pane["y"] + 30)
     drag(opened.page, corner, moved(corner, -40, 20))
     assert opened.rows() == ["1"]
-    opened.saved()
+    all_saved(opened)
     assert opened.stored()[0].position == start
 
 
@@ -168,7 +169,7 @@ def test_a_drag_beyond_the_ground_area_stops_at_its_border(bench: Callable[..., 
     opened = bench(people=1).open()
     dot = on_map(opened, int(opened.street.truth[0][0]))
     drag(opened.page, dot, moved(on_map(opened, GRID.nearest(np.array([[2.0, 26.9]]))[0]), 12, 0))
-    saved_again(opened)
+    all_saved(opened)
     assert opened.stored()[0].position // GRID.columns == GRID.rows - 1
 
 
@@ -176,7 +177,7 @@ def test_a_drag_onto_somebody_ends_beside_them(bench: Callable[..., Bench]) -> N
     opened = bench(people=2).open()
     mover, stander = (int(position) for position in opened.street.truth[0])
     drag(opened.page, on_map(opened, mover), on_map(opened, stander))
-    saved_again(opened)
+    all_saved(opened)
     positions = [one.position for one in opened.stored()]
     assert positions[1] == stander
     assert positions[0] != stander
@@ -189,7 +190,7 @@ def test_the_right_button_moves_the_selected_person_here(bench: Callable[..., Be
     foot = opened.place_of(best_view(start), start)
     opened.press("Tab")
     opened.page.mouse.click(*moved(foot, -50, 10), button="right")
-    saved_again(opened)
+    all_saved(opened)
     after = opened.place_of(best_view(start), opened.stored()[0].position)
     assert after == pytest.approx(moved(foot, -50, 10), abs=2)
 
@@ -204,7 +205,7 @@ def test_the_setting_lets_arrows_follow_the_ground_in_every_view(bench: Callable
         opened.pane(view).hover()
         opened.press("ArrowLeft")
     opened.press("ArrowUp")
-    saved_again(opened)
+    all_saved(opened)
     assert opened.stored()[0].position == start - 3 + GRID.columns
 
 
@@ -240,7 +241,7 @@ def test_a_key_held_for_long_speeds_up_after_sixty_repeats(bench: Callable[..., 
     start = opened.stored()[0].position
     opened.press("Tab")
     hold(opened, "ArrowRight", 70)
-    saved_again(opened)
+    all_saved(opened)
     assert metres_apart(start, opened.stored()[0].position) == pytest.approx((61 + 10 * 2) * 0.025, abs=1e-6)
 
 
@@ -251,7 +252,7 @@ def test_the_setting_keeps_held_keys_at_one_pace(bench: Callable[..., Bench]) ->
     opened.page.get_by_label("Arrow keys held for long speed up").uncheck()
     opened.press("Escape", "Tab")
     hold(opened, "ArrowRight", 70)
-    saved_again(opened)
+    all_saved(opened)
     assert metres_apart(start, opened.stored()[0].position) == pytest.approx(71 * 0.025, abs=1e-6)
 
 
@@ -265,7 +266,7 @@ def test_a_held_key_keeps_its_direction_where_another_view_begins(bench: Callabl
         opened.pane(other).hover(position={"x": 4, "y": 4})
         opened.page.keyboard.down("ArrowLeft")
     opened.page.keyboard.up("ArrowLeft")
-    saved_again(opened)
+    all_saved(opened)
     assert metres_apart(start, opened.stored()[0].position) == pytest.approx(9 * 0.025, abs=1e-6)
 
 
@@ -275,7 +276,7 @@ def test_a_step_onto_somebody_goes_past_them(bench: Callable[..., Bench]) -> Non
     crowd = np.array([start, start - 1, start + 1, start - GRID.columns, start + GRID.columns])
     annotate(opened.assignment, opened.street.frames[0], crowd)
     opened.open().press("Tab", "ArrowLeft")
-    saved_again(opened)
+    all_saved(opened)
     assert metres_apart(start, opened.stored()[0].position) == pytest.approx(0.05, abs=1e-6)
 
 

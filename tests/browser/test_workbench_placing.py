@@ -16,6 +16,7 @@ from gtm_hit.models import Annotation
 from tests.browser.bench import Bench, best_view, metres_apart, well_seen
 from tests.browser.street import CYLINDER, GRID, annotate, cameras
 from tests.browser.test_workbench_modules import run
+from tests.browser.test_workbench_moving import all_saved
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -155,7 +156,7 @@ def test_a_second_view_places_better_and_says_how_far_each_click_is_off(bench: C
     message = opened.page.locator(".notice.beside")
     expect(message).to_contain_text("Best place for 2 views")
     expect(message).to_contain_text(re.compile(rf"C{first + 1} \d+\.\d px, C{second + 1} \d+\.\d px"))
-    expect(opened.page.locator(".save-words")).to_have_text("All saved · r2")
+    all_saved(opened)
     assert metres_apart(opened.stored()[0].position, position) < metres_apart(once, position)
     assert coloured(opened, f"camera-{second}", CYAN) > 0
 
@@ -179,7 +180,7 @@ def test_a_first_click_with_the_modifier_moves_and_asks_for_the_second(bench: Ca
     x, y = opened.place_of(best_view(position), position)
     alt_click(opened.page, x + 20, y)
     expect(opened.page.locator(".notice.beside")).to_contain_text("another view")
-    expect(opened.page.locator(".save-words")).to_have_text("All saved · r2")
+    all_saved(opened)
     assert opened.stored()[0].position != position
 
 
@@ -194,12 +195,12 @@ def test_a_height_is_kept_in_all_later_frames_and_undone_at_once(bench: Callable
     opened = marked_in_all_frames(bench)
     opened.press("Tab", "Shift+BracketRight", "Shift+BracketRight", "PageUp", "PageDown", "PageUp")
     expect(opened.page.locator(".people li .size").first).to_have_text("1.86 m")
-    expect(opened.page.locator(".save-words")).to_have_text("All saved · r2")
+    all_saved(opened)
     assert [opened.stored(frame)[0].height for frame in range(3)] == pytest.approx([1.86] * 3)
     assert [opened.stored(frame)[1].height for frame in range(3)] == [None] * 3
     opened.press("Control+z")
     expect(opened.page.locator(".people li .size").first).to_have_text("")
-    expect(opened.page.locator(".save-words")).to_have_text("All saved · r3")
+    all_saved(opened)
     assert [opened.stored(frame)[0].height for frame in range(3)] == [None] * 3
 
 
@@ -208,7 +209,7 @@ def test_earlier_frames_keep_their_height(bench: Callable[..., Bench]) -> None:
     opened.page.locator(".timeline-frame").nth(1).click()
     expect(opened.page.locator("strong.place")).to_have_text("Frame 2 of 3")
     opened.press("Tab", "Shift+BracketLeft", "]")
-    expect(opened.page.locator(".save-words")).to_have_text("All saved · r2")
+    all_saved(opened)
     assert [opened.stored(frame)[0].height for frame in range(3)] == [
         None,
         pytest.approx(1.78),
@@ -216,14 +217,14 @@ def test_earlier_frames_keep_their_height(bench: Callable[..., Bench]) -> None:
     ]
     assert opened.stored(1)[0].radius == pytest.approx(0.17)
     opened.press("\\")
-    expect(opened.page.locator(".save-words")).to_have_text("All saved · r3")
+    all_saved(opened)
     assert [(one.height, one.radius) for one in opened.stored(2)] == [(None, None)] * 2
 
 
 def test_the_usual_size_is_not_stored_as_a_size_of_ones_own(bench: Callable[..., Bench]) -> None:
     opened = bench(people=1).open()
     opened.press("Tab", "Shift+BracketRight", "Shift+BracketLeft", "ArrowLeft")
-    expect(opened.page.locator(".save-words")).to_have_text("All saved · r2")
+    all_saved(opened)
     assert opened.stored()[0].height is None
 
 
@@ -253,7 +254,7 @@ def test_the_top_of_the_selected_box_is_dragged_to_the_head(bench: Callable[...,
     opened.page.mouse.move(x, y + 6)
     opened.page.mouse.move(x, y + 12)
     opened.page.mouse.up()
-    expect(opened.page.locator(".save-words")).to_have_text("All saved · r2")
+    all_saved(opened)
     stored: Annotation = opened.stored()[0]
     assert stored.position == position
     assert stored.height is not None
