@@ -56,8 +56,6 @@ export class Actions {
       zoom: () => this.toggleZoom(),
       outline: () => this.panes.set("outline", !this.panes.options.outline),
       directions: () => this.panes.set("directions", !this.panes.options.directions),
-      undo: () => this.undo(),
-      redo: () => this.redo(),
       help: () => showHelp(),
       settings: () => showSettings(this.settings),
       controls: () => this.setControls(true),
@@ -160,25 +158,10 @@ export class Actions {
     this.panes.zoom(!this.panes.zoomed);
   }
 
-  undo() {
-    if (!this.guard.refused()) this._afterStep(this.history.undo(), gettext("Nothing to undo"), (label) => gettext("Undone: {label}", { label }));
-  }
-
-  redo() {
-    if (!this.guard.refused()) this._afterStep(this.history.redo(), gettext("Nothing to redo"), (label) => gettext("Done again: {label}", { label }));
-  }
-
   escape() {
     this.setControls(false);
     if (this.dragging.cancel()) return;
     if (this.panes.zoomed) return this.panes.zoom(false);
     this.store.select(null);
-  }
-
-  _afterStep(step, nothing, sentence) {
-    if (!step) return this.notices.say(nothing);
-    const said = sentence(step.patch.label);
-    if (!step.skipped) return this.notices.say(said);
-    this.notices.say(`${said} – ${gettext("except what was changed elsewhere since")}`);
   }
 }

@@ -5,6 +5,7 @@
  *            at: number}} Patch
  */
 import { CARRIED, VALIDATED, annotation, changed } from "./annotation.js";
+import { same } from "./merge.js";
 import { gettext, ngettext } from "./messages.js";
 
 /** A new person, selected. */
@@ -53,6 +54,19 @@ export function copy(store, after) {
 export function fill(store, edits) {
   const frames = new Set(edits.map(({ frame }) => frame)).size;
   return patch(store, ngettext("fill {n} frame", "fill {n} frames", frames), edits);
+}
+
+/** A frame as it was once, with everything that was said about it. */
+export function restore(store, number, { people, done, nobody }, label) {
+  const present = store.people(number);
+  const changes = [...new Set([...present.keys(), ...people.keys()])]
+    .filter((person) => !same(present.get(person), people.get(person)))
+    .map((person) => ({ frame: number, person, after: people.get(person) ?? null }));
+  const restored = patch(store, label, changes, { frame: number });
+  const edits = restored.edits.filter((edit) => !edit.flags);
+  const frame = store.frame(number);
+  if (frame.done !== done || frame.nobody !== nobody) edits.push(flagEdit(store, number, { done, nobody }));
+  return { ...restored, edits };
 }
 
 /** The annotator leaves a frame as done; `nobody`: and says that nobody is there. */

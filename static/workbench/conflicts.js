@@ -6,23 +6,32 @@ import { gettext } from "./messages.js";
  * Somebody else (or another tab) changed the same people: ask for each whose version stays.
  * @returns {Promise<Map<number, "ours"|"theirs">>}
  */
-export async function askAboutConflicts(scene, store, { frame, conflicts }) {
+export async function askAboutConflicts(scene, store, { frame, conflicts, author, savedAt }) {
   const place = store.numbers.indexOf(frame) + 1;
-  const rows = conflicts.map((conflict) => conflictRow(scene, conflict));
-  await ask({
+  const rows = conflicts.map((conflict) => conflictRow(scene, conflict, otherWords(author, savedAt)));
+  const question = {
     title: gettext("Frame {place} was changed in two places", { place }),
     body: [
       gettext("Everything else was put together. For these people, which one is right?"),
+      gettext("Both stay in the history of the frame."),
       element("div", { className: "conflicts" }, rows),
     ],
     buttons: [{ id: "apply", label: gettext("Use these"), main: true }],
-  });
+  };
+  while ((await ask(question)) !== "apply"); // Escape decides nothing
   return new Map(
     conflicts.map(({ person }, index) => [person, rows[index].querySelector("input:checked").value]),
   );
 }
 
-function conflictRow(scene, { person, ours, theirs }) {
+/** Who the other is, as far as is known: another tab does not say. */
+function otherWords(author, savedAt) {
+  if (!author) return gettext("the other");
+  const time = new Date(savedAt).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" });
+  return gettext("the other, by {author} at {time}", { author, time });
+}
+
+function conflictRow(scene, { person, ours, theirs }, other) {
   const choice = (value, text, annotation, checked) =>
     element(
       "label",
@@ -35,7 +44,7 @@ function conflictRow(scene, { person, ours, theirs }) {
     {},
     element("legend", {}, gettext("Person {person}", { person })),
     choice("ours", gettext("mine"), ours, true),
-    choice("theirs", gettext("the other"), theirs, false),
+    choice("theirs", other, theirs, false),
   );
 }
 

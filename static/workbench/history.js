@@ -1,3 +1,4 @@
+import { annotation } from "./annotation.js";
 import { combined, inverse } from "./commands.js";
 import { Emitter } from "./emitter.js";
 import { same } from "./merge.js";
@@ -65,8 +66,23 @@ export class History extends Emitter {
   }
 
   restore({ done, undone }) {
-    this._done = done;
-    this._undone = undone;
+    const known = (patch) => patch.edits.every((edit) => this._store.frame(edit.frame));
+    [this._done, this._undone] = [done.filter(known), undone.filter(known)];
+    for (const { edits } of [...done, ...undone]) {
+      for (const { person } of edits) if (person !== undefined) this._store.reservePerson(person);
+    }
+    this.emit("change");
+  }
+
+  /** Somebody got another number for a reason outside the history: its steps mean the same person still. */
+  renumber(from, to, frames) {
+    const named = (one) => (one ? annotation({ ...one, person: to }) : one);
+    const renumbered = (edit) =>
+      edit.person === from && frames.includes(edit.frame)
+        ? { ...edit, person: to, before: named(edit.before), after: named(edit.after) }
+        : edit;
+    const inside = (patch) => ({ ...patch, edits: patch.edits.map(renumbered) });
+    [this._done, this._undone] = [this._done.map(inside), this._undone.map(inside)];
     this.emit("change");
   }
 
@@ -74,7 +90,7 @@ export class History extends Emitter {
     const patch = from.pop();
     if (!patch) return null;
     const step = direction(patch);
-    const edits = step.edits.filter((edit) => this._stillTrue(edit));
+    const edits = this._stillTrue(step.edits);
     to.push({ ...patch, group: null });
     this._store.open(step.frame);
     this._store.apply(edits);
@@ -83,9 +99,19 @@ export class History extends Emitter {
     return { patch, skipped: step.edits.length - edits.length };
   }
 
-  /** Somebody else's newer change of the same person (merged in from a save) is not undone. */
-  _stillTrue(edit) {
-    if (edit.flags) return true;
-    return same(this._store.person(edit.person, edit.frame) ?? null, edit.before);
+  /**
+   * Somebody else's newer change (merged in from a save) is not undone; then what was said about the whole frame
+   * does not come back either.
+   */
+  _stillTrue(edits) {
+    const found = edits.filter((edit) => !edit.flags && same(this._store.person(edit.person, edit.frame) ?? null, edit.before));
+    const complete = (number) => edits.every((edit) => edit.frame !== number || edit.flags || found.includes(edit));
+    const flags = edits.filter((edit) => edit.flags && complete(edit.frame) && this._saysStill(edit));
+    return [...found, ...flags];
+  }
+
+  _saysStill({ frame, flags: { before } }) {
+    const { done, nobody } = this._store.frame(frame);
+    return done === before.done && nobody === before.nobody;
   }
 }

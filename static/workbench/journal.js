@@ -1,5 +1,5 @@
 import { DISMISSED, FRAMES, HISTORIES, openDatabase } from "./database.js";
-import { joinTabs } from "./tabs.js";
+import { joinTabs, shareNumbers } from "./tabs.js";
 
 /**
  * Keeps what the server has not acknowledged, so that a crash, a closed lid or an expired session loses nothing.
@@ -29,6 +29,11 @@ export class Journal {
   /** Whether edits survive a crash in this browser. */
   get keeps() {
     return this._database !== null;
+  }
+
+  /** From now on this tab and the others of the layer give away different person numbers. */
+  shareNumbers(store) {
+    if (this.keeps) shareNumbers(this._tab, store);
   }
 
   /** @param {() => object} record made when it is written, so that a burst of edits costs one write */

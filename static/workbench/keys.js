@@ -64,6 +64,7 @@ const TABLE = [
   ["directions", "view", ["h"], () => gettext("show where the arrow keys lead")],
   ["undo", "other", ["Ctrl+z"], () => gettext("undo")],
   ["redo", "other", ["Ctrl+y", "Ctrl+Shift+z"], () => gettext("redo")],
+  ["history", "frame", ["Shift+h"], () => gettext("who saved this frame and when; look at it and restore it")],
   ["help", "other", ["?", "F1"], () => gettext("this sheet")],
   ["settings", "other", [","], () => gettext("settings")],
   ["controls", "other", ["F6"], () => gettext("let Tab move between the buttons; Escape returns to annotating")],

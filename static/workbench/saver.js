@@ -1,4 +1,4 @@
-import { asList, byPerson, carriedOf } from "./annotation.js";
+import { annotation, asList, byPerson, carriedOf } from "./annotation.js";
 import { ApiError, NetworkError } from "./api.js";
 import { Emitter } from "./emitter.js";
 import { uuid4 } from "./identifiers.js";
@@ -11,7 +11,8 @@ const SLOWEST_RETRY = 30_000;
  * Saves whole frames. What has been sent is sent again, unchanged and under the same save id, until it is
  * answered: an answer lost on the way can then never look like somebody else's edit.
  *
- * Events: `status` (look at `status()`), `conflict` {frame, conflicts}.
+ * Events: `status` (look at `status()`), `conflict` {frame, conflicts, author, savedAt} (or ask `conflicts()`),
+ * `renumber` {from, to, frames}: a new person of ours got another number, because somebody else had taken it.
  */
 export class Saver extends Emitter {
   /** @param {{practice: boolean}} parts in practice (the tutorial) nothing is saved */
@@ -31,7 +32,7 @@ export class Saver extends Emitter {
 
   /** Take the server's state of a frame as the base of the next edits. */
   install(state) {
-    this._slots.set(state.number, { base: baseOf(state), sending: null, busy: false, edits: 0, conflicts: null, refused: null });
+    this._slots.set(state.number, { base: baseOf(state), sending: null, busy: false, edits: 0, added: new Set(), question: null, refused: null });
     this._store.install(state.number, baseOf(state), "server");
   }
 
@@ -43,11 +44,10 @@ export class Saver extends Emitter {
     if (slot.edits === 0) {
       slot.base = { revision: record.base.revision, ...stateOf(record.base) };
       slot.sending = record.sending ? { ...record.sending, edits: record.edits } : null;
+      slot.question = revived(record.question);
       this._store.install(record.frame, ours, "journal");
     } else {
-      const now = this._store.frame(record.frame);
-      const { people } = mergePeople(stateOf(record.base).people, now.people, ours.people);
-      this._store.install(record.frame, { ...now, people }, "journal");
+      this._bringTogether(record.frame, slot, stateOf(record.base), ours, "journal");
     }
     slot.edits += record.edits;
     this._keep(record.frame, slot);
@@ -74,7 +74,7 @@ export class Saver extends Emitter {
     const unsaved = this.unsaved;
     const slots = [...this._slots.values()];
     if (this._readOnly !== null) return { kind: "read_only", reason: this._readOnly, unsaved };
-    if (slots.some((slot) => slot.conflicts)) return { kind: "conflict", unsaved };
+    if (slots.some((slot) => slot.question)) return { kind: "conflict", unsaved };
     const refused = slots.find((slot) => slot.refused);
     if (refused) return { kind: "refused", reason: refused.refused, unsaved };
     if (this._trouble) return { kind: this._trouble, unsaved, kept: this._journal.keeps };
@@ -113,13 +113,18 @@ export class Saver extends Emitter {
     if (this.unsaved) this._schedule(0);
   }
 
+  /** What the annotator has to decide, also from before a reload: {frame, conflicts, author, savedAt} each. */
+  conflicts() {
+    return [...this._slots.values()].map(({ question }) => question).filter(Boolean);
+  }
+
   /** The annotator decided: per person, "ours" or "theirs". */
   resolve(frame, choices) {
     const slot = this._slots.get(frame);
-    const edits = slot.conflicts
+    const edits = slot.question.conflicts
       .filter(({ person }) => choices.get(person) === "theirs")
       .map(({ person, theirs }) => ({ frame, person, after: theirs ?? null }));
-    slot.conflicts = null;
+    slot.question = null;
     this._store.apply(edits);
     this._settle(frame, slot);
   }
@@ -142,6 +147,7 @@ export class Saver extends Emitter {
       base: plain(slot.base),
       ours: plain(this._store.frame(frame)),
       sending: slot.sending && { saveId: slot.sending.saveId, body: slot.sending.body },
+      question: slot.question, // a crash must not answer it
       edits: slot.edits,
       at: Date.now(),
     }));
@@ -159,7 +165,7 @@ export class Saver extends Emitter {
 
   async _send(frame, options = {}) {
     const slot = this._slots.get(frame);
-    if (slot.busy || slot.conflicts || slot.refused || this._readOnly !== null || slot.edits === 0) return;
+    if (slot.busy || slot.question || slot.refused || this._readOnly !== null || slot.edits === 0) return;
     slot.sending ??= this._prepare(frame, slot);
     if (!slot.sending) return this.emit("status"); // undone before it was ever sent: all is saved again
     slot.busy = true;
@@ -191,7 +197,9 @@ export class Saver extends Emitter {
   _acknowledge(frame, slot, answer) {
     this._trouble = null;
     this._retry = 0;
-    slot.base = { revision: answer.revision, ...stateOf(slot.sending.body) };
+    const base = { revision: answer.revision, ...stateOf(slot.sending.body) };
+    for (const person of base.people.keys()) if (!slot.base.people.has(person)) slot.added.add(person);
+    slot.base = base;
     slot.edits -= slot.sending.edits;
     slot.sending = null;
     this._settle(frame, slot);
@@ -225,28 +233,47 @@ export class Saver extends Emitter {
 
   /** The server has a newer state: both sides' people come together, or the annotator is asked. */
   _merge(frame, slot, current) {
-    const now = this._store.frame(frame);
     const theirs = baseOf(current);
-    const { people, conflicts, renumber } = mergePeople(slot.base.people, now.people, theirs.people);
-    const nobody = mergeFlag(slot.base.nobody, now.nobody, theirs.nobody) && people.size === 0;
-    const finished = carriedOf(people).length === 0 && (people.size > 0 || nobody);
-    const merged = { people, nobody, done: mergeFlag(slot.base.done, now.done, theirs.done) && finished };
-    const renumbered = renumber.map((person) => now.people.get(person));
+    const { base } = slot;
     slot.sending = null;
     slot.base = theirs;
     this._trouble = null;
-    this._store.install(frame, merged, "server");
-    this._store.apply(
-      renumbered.map((one) => {
-        const person = this._store.takePerson();
-        return { frame, person, after: Object.freeze({ ...one, person }) };
-      }),
-    );
-    if (conflicts.length) {
-      slot.conflicts = conflicts;
-      this.emit("conflict", { frame, conflicts });
-    }
+    this._bringTogether(frame, slot, base, theirs, "server", { author: current.author, savedAt: current.saved_at });
     this._settle(frame, slot);
+  }
+
+  /** The frame as the store has it, and `theirs`, which both come from `base`. */
+  _bringTogether(frame, slot, base, theirs, source, { author = "", savedAt = null } = {}) {
+    const now = this._store.frame(frame);
+    const ours = now.people;
+    const { people, conflicts, renumber } = mergePeople(base.people, ours, theirs.people);
+    const nobody = mergeFlag(base.nobody, now.nobody, theirs.nobody) && people.size === 0;
+    const finished = carriedOf(people).length === 0 && (people.size > 0 || nobody);
+    this._store.install(frame, { people, nobody, done: mergeFlag(base.done, now.done, theirs.done) && finished }, source);
+    for (const person of renumber) this._renumber(frame, ours.get(person));
+    if (!conflicts.length) return;
+    slot.question = { frame, conflicts, author, savedAt };
+    this.emit("conflict", slot.question);
+  }
+
+  /** Somebody else gave away the same number: our new person gets another one, wherever we have put it. */
+  _renumber(frame, one) {
+    const { person: from } = one;
+    const to = this._store.takePerson();
+    const others = [...this._slots].filter(([number, slot]) => number !== frame && this._isOurs(slot, number, from)).map(([number]) => number);
+    const moved = (number, old) => ({ frame: number, person: to, after: annotation({ ...old, person: to }) });
+    this._store.apply([
+      moved(frame, one),
+      ...others.flatMap((number) => [
+        { frame: number, person: from, after: null },
+        moved(number, this._store.person(from, number)),
+      ]),
+    ]);
+    this.emit("renumber", { from, to, frames: [frame, ...others] });
+  }
+
+  _isOurs(slot, frame, person) {
+    return this._store.person(person, frame) !== undefined && (slot.added.has(person) || !slot.base.people.has(person));
   }
 
   _refuse(slot, error) {
@@ -272,4 +299,12 @@ function plain({ people, done, nobody }) {
 
 function isSame(one, other) {
   return samePeople(one.people, other.people) && one.done === other.done && one.nobody === other.nobody;
+}
+
+/** A question as it was before a reload; the database gives plain values back. */
+function revived(question) {
+  if (!question) return null;
+  const frozen = (one) => (one ? annotation(one) : undefined);
+  const conflicts = question.conflicts.map((one) => ({ ...one, ours: frozen(one.ours), theirs: frozen(one.theirs) }));
+  return { ...question, conflicts };
 }

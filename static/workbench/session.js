@@ -30,6 +30,8 @@ export async function openSession(settings) {
   const history = new History(store, (patch) => withRefill(store, scene, patch));
   loader.connect(saver, states);
   if (!scene.editable) saver.makeReadOnly(scene.readOnlyReason);
+  saver.on("renumber", ({ from, to, frames }) => history.renumber(from, to, frames));
+  journal.shareNumbers(store);
   await recover(journal, saver, loader, history);
   store.open(first);
   return { api, scene, store, history, saver, loader, journal, images, activity };

@@ -10,16 +10,28 @@ const PATIENCE = 120; // ms other tabs have to answer
 export async function joinTabs(layer) {
   const channel = new BroadcastChannel(`gtm-layer-${layer}`);
   const asking = uuid4();
-  const tab = { name: storedName(), alive: new Set(), channel };
+  const tab = { name: storedName(), alive: new Set(), channel, next: 0, heard: 0, onNumbers: () => {} };
   channel.onmessage = ({ data }) => {
-    if (data.kind === "who" && data.asking !== asking) channel.postMessage({ kind: "here", name: tab.name });
+    if (data.kind === "who" && data.asking !== asking) channel.postMessage({ kind: "here", name: tab.name, next: tab.next });
     if (data.kind === "here") tab.alive.add(data.name);
+    if (data.next) tab.onNumbers((tab.heard = Math.max(tab.heard, data.next)));
   };
   channel.postMessage({ kind: "who", asking });
   await new Promise((resolve) => setTimeout(resolve, PATIENCE));
   if (tab.alive.has(tab.name)) tab.name = uuid4();
   remember(tab.name);
   return tab;
+}
+
+/** Tabs tell each other which person numbers are given away, long before the server knows. */
+export function shareNumbers(tab, store) {
+  tab.onNumbers = (next) => store.reservePerson(next - 1);
+  tab.onNumbers(tab.heard);
+  store.on("change", () => {
+    if (store.nextPerson <= Math.max(tab.next, tab.heard)) return;
+    tab.next = store.nextPerson;
+    tab.channel.postMessage({ kind: "numbers", next: tab.next });
+  });
 }
 
 function storedName() {

@@ -5,9 +5,11 @@ import { directionItems } from "./directions.js";
 import { element } from "./dom.js";
 import { Filmstrip } from "./filmstrip.js";
 import { finishAssignment } from "./finish.js";
+import { FrameHistory } from "./frame_history.js";
 import { IdentityActions } from "./identity_actions.js";
 import { Keyboard } from "./keyboard.js";
 import { Layout } from "./layout.js";
+import { gettext } from "./messages.js";
 import { Notices } from "./notices.js";
 import { Panes } from "./panes.js";
 import { Paths } from "./paths.js";
@@ -19,6 +21,7 @@ import { Settings } from "./settings.js";
 import { TimeActions } from "./time_actions.js";
 import { Timeline } from "./timeline.js";
 import { Tutorial } from "./tutorial.js";
+import { UndoActions } from "./undo_actions.js";
 import { Walk } from "./walk.js";
 import { WarningActions } from "./warning_actions.js";
 import { warningItems } from "./warning_marks.js";
@@ -41,6 +44,7 @@ export function buildWorkbench(root, session, { mode, home }) {
   const actions = new Actions({ ...session, settings, panes, notices, walk });
   const identity = new IdentityActions({ ...session, panes, notices, guard: actions.guard });
   actions.use(identity.table());
+  actions.use(new UndoActions({ ...session, notices, guard: actions.guard }).table());
   const playback = new Playback({ ...session, walk, settings });
   actions.use(new TimeActions({ ...session, settings, panes, notices, walk, playback }).table());
   actions.use(new Round({ store, panes, notices, walk, actions }).table());
@@ -60,8 +64,12 @@ export function buildWorkbench(root, session, { mode, home }) {
   connectKeyboard(actions, bar, perform);
   new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
   if (mode === "tutorial") panel.element.prepend(new Tutorial({ ...session, home }).element);
-  else panel.element.append(warn(session, { settings, panes, notices, walk, actions, identity }));
-  watch(session, panes);
+  else {
+    const frameHistory = new FrameHistory({ ...session, panes, notices, guard: actions.guard });
+    actions.use(frameHistory.table());
+    panel.element.append(warn(session, { settings, panes, notices, walk, actions, identity }), frameHistory.element);
+  }
+  watch(session, panes, notices);
   walk.carryInto(store.current);
 }
 
@@ -87,9 +95,15 @@ function warn(session, { settings, panes, notices, walk, actions, identity }) {
 }
 
 /** Things that happen outside the page's own controls. */
-function watch({ saver, store, scene, images, activity }, panes) {
-  saver.on("conflict", async (conflict) =>
-    saver.resolve(conflict.frame, await askAboutConflicts(scene, store, conflict)),
+function watch({ saver, store, scene, images, activity }, panes, notices) {
+  let asking = Promise.resolve();
+  const askInTurn = (conflict) => {
+    asking = asking.then(async () => saver.resolve(conflict.frame, await askAboutConflicts(scene, store, conflict)));
+  };
+  saver.conflicts().forEach(askInTurn);
+  saver.on("conflict", askInTurn);
+  saver.on("renumber", ({ from, to }) =>
+    notices.say(gettext("Person {from} is {to} now: somebody else had taken the number meanwhile", { from, to })),
   );
   const back = () => {
     saver.wake();
