@@ -145,9 +145,9 @@ def remember(worker: Worker, step: Step) -> None:
 
 
 def judge(tutorial: Tutorial, step: Step, number: int, rows: list[Row]) -> Verdict:
-    wanted = tutorial.frames[1 if step is Step.NEXT else 0].number
-    if number != wanted:
-        return Verdict(False, _("This step is about frame %(number)d.") % {"number": wanted})
+    index = 1 if step is Step.NEXT else 0
+    if number != tutorial.frames[index].number:
+        return Verdict(False, _("This step is about frame %(place)d of 3.") % {"place": index + 1})
     judges = {
         Step.PLACE: judge_place,
         Step.CORRECT: judge_correct,

@@ -1,69 +1,53 @@
 import { element, setText } from "./dom.js";
 import { gettext } from "./messages.js";
+import { Spotlight } from "./spotlight.js";
+import { tutorialSteps, whatMatters } from "./tutorial_steps.js";
 
 const SETTLED = 600; // ms without an edit before the server is asked
 
-/** Steps in order; the server judges each against the truth it keeps to itself. */
-function steps() {
-  return [
-    {
-      id: "place",
-      title: gettext("Mark somebody who has no box"),
-      text: gettext("One person in this frame has no box. Click on the ground between their feet, in the view where you see them best. The box appears in every view at once."),
-      hint: gettext("Is it a little off? The arrow keys move it by 2.5 cm."),
-    },
-    {
-      id: "correct",
-      title: gettext("Correct a yellow box"),
-      text: gettext("Yellow, dashed boxes were carried over and may be wrong. One stands beside its person: select it (click, or Tab) and move it with the arrow keys until it fits in all views. Z zooms every view to it."),
-      hint: gettext("A yellow box that already fits needs no moving: press E to validate it."),
-    },
-    {
-      id: "remove",
-      title: gettext("Remove a box with nobody in it"),
-      text: gettext("One box has nobody in it. Look at it in several views, select it, and press Backspace."),
-      hint: gettext("Wrong one? Ctrl + Z brings it back."),
-    },
-    {
-      id: "next",
-      title: gettext("Go to the next frame"),
-      text: gettext("Press N. Everybody of this frame comes along, yellow. Move those who walked on, and press E for those who stand right, until nobody is yellow."),
-      hint: gettext("F goes to the next yellow person."),
-    },
-  ];
-}
-
-/** One step at a time: what to do, whether it was done well, and what is next. */
+/**
+ * One step at a time: what to do, whether it was done well, and what is next. One can go back to a step, and
+ * start over; nothing is saved here but that a step was done.
+ */
 export class Tutorial {
-  constructor({ api, store, home }) {
-    Object.assign(this, { _api: api, _store: store, _home: home });
-    this._steps = steps();
+  constructor({ api, store, panes, walk, home }) {
+    Object.assign(this, { _api: api, _store: store, _walk: walk, _home: home });
+    this._spotlight = new Spotlight(panes);
+    this._steps = tutorialSteps();
     this._index = 0;
     this._timer = null;
     this._asked = 0;
     this._build();
-    this._show();
     store.on("change", ({ source }) => source === "edit" && this._soon());
     store.on("frame", () => this._soon());
   }
 
+  /** Once the page is there. */
+  start() {
+    this._show();
+  }
+
   _build() {
     this._progress = element("p", { className: "tutorial-progress" });
-    this._title = element("h2", {});
+    this._title = element("h2", { tabIndex: -1 });
     this._text = element("p", {});
+    this._matters = element("ul", { className: "tutorial-matters", hidden: true }, whatMatters().map((text) => element("li", {}, text)));
     this._hint = element("p", { className: "tutorial-hint" });
     this._verdict = element("p", { className: "tutorial-verdict", role: "status" });
+    this._back = element("button", { type: "button", className: "quiet", onclick: () => this._goBack() }, gettext("Back"));
+    this._again = element("button", { type: "button", className: "quiet", onclick: () => window.location.reload() }, gettext("Start over"));
     this._check = element("button", { type: "button", onclick: () => this._ask(true) }, gettext("Check"));
     this._go = element("button", { type: "button", className: "main", hidden: true, onclick: () => this._advance() });
     this.element = element(
       "section",
-      { className: "tutorial", "aria-label": gettext("Tutorial") },
+      { className: "tutorial", "aria-label": gettext("Tutorial"), onkeydown: keepForButtons },
       this._progress,
       this._title,
       this._text,
+      this._matters,
       this._hint,
       this._verdict,
-      element("div", { className: "dialog-buttons" }, this._check, this._go),
+      element("div", { className: "tutorial-buttons" }, this._back, this._again, this._check, this._go),
     );
   }
 
@@ -74,19 +58,22 @@ export class Tutorial {
     setText(this._text, step.text);
     setText(this._hint, step.hint);
     setText(this._verdict, "");
+    this._matters.hidden = true;
     this._go.hidden = true;
     this._check.hidden = false;
+    this._back.hidden = this._index === 0;
     this.element.dataset.step = step.id;
     delete this.element.dataset.ok;
+    this._spotlight.show(step.light);
   }
 
   _soon() {
     clearTimeout(this._timer);
     if (this.element.dataset.ok) return;
-    this._timer = setTimeout(() => this._ask(false), SETTLED);
+    this._timer = setTimeout(() => this._ask(true), SETTLED);
   }
 
-  /** `loud`: the annotator pressed Check, so say what is wrong; otherwise only praise unasked. */
+  /** `loud`: something was done, so say what is still wrong; otherwise only praise. */
   async _ask(loud) {
     const { id } = this._steps[this._index];
     const asked = ++this._asked;
@@ -95,29 +82,34 @@ export class Tutorial {
       const { ok, message } = await this._api.checkTutorial({ step: id, frame: this._store.current, annotations });
       if (asked !== this._asked) return; // an answer to an older question
       if (ok) this._praise(message);
-      else if (loud || id === "place") setText(this._verdict, message);
+      else if (loud) setText(this._verdict, message);
     } catch (error) {
       if (loud) setText(this._verdict, gettext("The answer could not be checked: {error}", { error: error.message }));
     }
   }
 
   _praise(message) {
+    const last = this._index === this._steps.length - 1;
     setText(this._verdict, `✓ ${message}`);
     this.element.dataset.ok = "true";
     this._check.hidden = true;
     this._go.hidden = false;
-    const last = this._index === this._steps.length - 1;
     setText(this._go, last ? gettext("Finish the tutorial") : gettext("Next step"));
+    this._spotlight.show({});
+    if (last) this._close();
     this._go.focus();
   }
 
+  /** The last word: what is paid attention to. */
+  _close() {
+    setText(this._title, gettext("That is all you need. What is looked at in your work:"));
+    setText(this._text, "");
+    setText(this._hint, "");
+    this._matters.hidden = false;
+  }
+
   async _advance() {
-    if (this._index < this._steps.length - 1) {
-      this._index += 1;
-      this._show();
-      document.activeElement?.blur();
-      return this._ask(false); // it may have been done already
-    }
+    if (this._index < this._steps.length - 1) return this._goTo(this._index + 1);
     try {
       await this._api.finishTutorial();
       window.location.assign(this._home);
@@ -125,4 +117,26 @@ export class Tutorial {
       setText(this._verdict, error.message);
     }
   }
+
+  async _goBack() {
+    const index = this._index - 1;
+    const number = this._store.numbers[this._steps[index].frame];
+    if (this._store.current !== number) await this._walk.jump(number);
+    await this._goTo(index);
+  }
+
+  /** It may have been done already. */
+  _goTo(index) {
+    clearTimeout(this._timer);
+    this._asked += 1;
+    this._index = index;
+    this._show();
+    document.activeElement?.blur();
+    return this._ask(false);
+  }
+}
+
+/** Enter and Space on a button of the tutorial press it, instead of going to people. */
+function keepForButtons(event) {
+  if (event.target.closest("button") && ["Enter", " "].includes(event.key)) event.stopPropagation();
 }

@@ -63,7 +63,7 @@ export function buildWorkbench(root, session, { mode, home }) {
   new Pointer(panes, actions);
   connectKeyboard(actions, bar, perform);
   new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
-  if (mode === "tutorial") panel.element.prepend(new Tutorial({ ...session, home }).element);
+  if (mode === "tutorial") startTutorial(panel, { ...session, panes, walk, home });
   else {
     const frameHistory = new FrameHistory({ ...session, panes, notices, guard: actions.guard });
     actions.use(frameHistory.table());
@@ -71,6 +71,12 @@ export function buildWorkbench(root, session, { mode, home }) {
   }
   watch(session, panes, notices);
   walk.carryInto(store.current);
+}
+
+function startTutorial(panel, parts) {
+  const tutorial = new Tutorial(parts);
+  panel.element.prepend(tutorial.element);
+  tutorial.start();
 }
 
 /** F6 gives Tab, Space and Enter to the buttons; Escape takes them back. */

@@ -2,57 +2,147 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass
+from typing import Any
+
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Locator, Page, expect
 from pytest_django.live_server_helper import LiveServer
 
+from gtm_hit.models import Worker
 from gtm_hit.ops import tokens, tutorial, workers
-from tests.browser.bench import best_view, click_position
+from gtm_hit.ops.tutorial_exercise import Exercise
+from tests.browser.bench import TWO_FRAMES, best_view, click_position
 from tests.browser.street import make_street, tell_truth
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
 
-def test_the_tutorial_can_be_done_step_by_step(page: Page, live_server: LiveServer) -> None:
+CYAN = """
+() => [...document.querySelectorAll(".pane-marks")].reduce((sum, canvas) => {
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  for (let i = 0; i < data.length; i += 4) {
+    if (data[i] === 47 && data[i + 1] === 227 && data[i + 2] === 247) sum += 1;
+  }
+  return sum;
+}, 0)
+"""
+
+
+@dataclass
+class Learner:
+    worker: Worker
+    address: str
+    exercise: Exercise
+
+
+@pytest.fixture
+def learner(live_server: LiveServer) -> Learner:
     street = make_street(people=6, frames=3, slug="demo")
     tell_truth(street)
     worker = workers.enter("link", "newcomer")
-    exercise = tutorial.load().exercise
-    page.set_viewport_size({"width": 1920, "height": 1080})
-    page.goto(f"{live_server.url}/work/{tokens.worker_token(worker, street.dataset)}/tutorial/")
-    expect(page.locator("#workbench")).to_have_attribute("data-ready", "true")
-    steps = page.locator(".tutorial")
+    path = f"/work/{tokens.worker_token(worker, street.dataset)}/tutorial/"
+    return Learner(worker, live_server.url + path, tutorial.load().exercise)
 
-    expect(steps).to_contain_text("step 1 of 4")
+
+def start(page: Page, learner: Learner) -> Locator:
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    page.goto(learner.address)
+    expect(page.locator("#workbench")).to_have_attribute("data-ready", "true")
+    return page.locator(".tutorial")
+
+
+def test_the_tutorial_can_be_done_step_by_step(page: Page, learner: Learner) -> None:
+    exercise = learner.exercise
+    card = start(page, learner)
+
+    expect(card).to_contain_text("step 1 of 4")
     click_truth(page, exercise.truth[0][exercise.missing])
     next_step(page)
 
-    expect(steps).to_contain_text("step 2 of 4")
+    expect(card).to_contain_text("step 2 of 4")
     choose(page, exercise.shifted)
     page.get_by_role("button", name="Check").click()
-    expect(steps).to_contain_text("cm from the feet")
+    expect(card).to_contain_text("cm from the feet")
     click_truth(page, exercise.truth[0][exercise.shifted], button="right")
     next_step(page)
 
-    expect(steps).to_contain_text("step 3 of 4")
+    expect(card).to_contain_text("step 3 of 4")
     choose(page, exercise.invented)
     page.keyboard.press("Backspace")
     next_step(page)
 
-    expect(steps).to_contain_text("step 4 of 4")
+    expect(card).to_contain_text("step 4 of 4")
     page.keyboard.press("n")
     expect(page.locator(".place")).to_have_text("Frame 2 of 3")
     for person in exercise.carried:
         choose(page, person)
         click_truth(page, exercise.truth[1][person], button="right")
         page.keyboard.press("e")
+    expect(card).to_contain_text("What is looked at in your work")
     page.get_by_role("button", name="Finish the tutorial").click()
     page.wait_for_url("**/work/*/")
-    worker.refresh_from_db()
-    assert worker.tutorial_done_at is not None
+    learner.worker.refresh_from_db()
+    assert learner.worker.tutorial_done_at is not None
 
 
-def click_truth(page: Page, position: int, **options: str) -> None:
+def test_a_finished_step_is_left_with_enter(page: Page, learner: Learner) -> None:
+    card = start(page, learner)
+    click_truth(page, learner.exercise.truth[0][learner.exercise.missing])
+    expect(page.get_by_role("button", name="Next step")).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(card).to_contain_text("step 2 of 4")
+
+
+def test_a_click_too_far_off_is_told_by_how_much_without_being_asked(page: Page, learner: Learner) -> None:
+    card = start(page, learner)
+    off = learner.exercise.truth[0][learner.exercise.missing] + 12  # 30 cm
+    page.keyboard.down("Shift")
+    click_truth(page, off)
+    page.keyboard.up("Shift")
+    expect(card).to_contain_text(re.compile(r"Still (29|30) cm from the feet"))
+    expect(page.get_by_role("button", name="Next step")).to_be_hidden()
+
+
+def test_the_spotlight_rings_the_yellow_person_until_they_stand_right(page: Page, learner: Learner) -> None:
+    card = start(page, learner)
+    expect(page.locator(".pane.in-spotlight")).to_have_count(7)
+    click_truth(page, learner.exercise.truth[0][learner.exercise.missing])
+    next_step(page)
+    assert cyan_without_selection(page) > 100
+    choose(page, learner.exercise.shifted)
+    click_truth(page, learner.exercise.truth[0][learner.exercise.shifted], button="right")
+    expect(card).to_have_attribute("data-ok", "true")
+    assert cyan_without_selection(page) == 0
+
+
+def test_one_can_go_back_to_a_step_and_its_frame(page: Page, learner: Learner) -> None:
+    card = start(page, learner)
+    click_truth(page, learner.exercise.truth[0][learner.exercise.missing])
+    next_step(page)
+    page.keyboard.press("n")
+    page.get_by_role("button", name="Go on, come back later").click()
+    expect(page.locator(".place")).to_have_text("Frame 2 of 3")
+    page.get_by_role("button", name="Back", exact=True).click()
+    expect(card).to_contain_text("step 1 of 4")
+    expect(page.locator(".place")).to_have_text("Frame 1 of 3")
+    expect(page.get_by_role("button", name="Next step")).to_be_visible()  # it is still done
+
+
+def test_starting_over_brings_the_mistakes_back(page: Page, learner: Learner) -> None:
+    card = start(page, learner)
+    shown = page.locator(".people li")
+    before = shown.count()
+    click_truth(page, learner.exercise.truth[0][learner.exercise.missing])
+    next_step(page)
+    expect(shown).to_have_count(before + 1)
+    page.get_by_role("button", name="Start over").click()
+    expect(card).to_contain_text("step 1 of 4")
+    expect(shown).to_have_count(before)
+
+
+def click_truth(page: Page, position: int, **options: Any) -> None:
     click_position(page, best_view(position), position, **options)
 
 
@@ -62,3 +152,11 @@ def choose(page: Page, person: int) -> None:
 
 def next_step(page: Page) -> None:
     page.get_by_role("button", name="Next step").click()
+
+
+def cyan_without_selection(page: Page) -> int:
+    """Pixels of the colour of rings over all views; nobody is selected, the pointer is elsewhere."""
+    page.mouse.move(5, 5)
+    page.keyboard.press("Escape")
+    page.evaluate(TWO_FRAMES)
+    return int(page.evaluate(CYAN))
