@@ -7,13 +7,13 @@ from typing import Any, ClassVar
 from django.contrib.auth.models import AnonymousUser
 from django.utils.translation import gettext as _
 from rest_framework.authentication import BaseAuthentication, SessionAuthentication
-from rest_framework.exceptions import AuthenticationFailed
-from rest_framework.permissions import BasePermission
+from rest_framework.exceptions import AuthenticationFailed, PermissionDenied
+from rest_framework.permissions import SAFE_METHODS, BasePermission
 from rest_framework.request import Request
 from rest_framework.views import APIView
 
-from gtm_hit.models import Assignment
-from gtm_hit.ops import tokens
+from gtm_hit.models import ApiToken, Assignment
+from gtm_hit.ops import api_tokens, tokens
 
 
 class TokenAuthentication(BaseAuthentication):
@@ -58,6 +58,23 @@ class StaffSession(SessionAuthentication):
         return "Session"
 
 
+class BearerAuthentication(BaseAuthentication):
+    """A script that acts under the name of whoever made its key; `request.auth` is the ApiToken."""
+
+    def authenticate(self, request: Request) -> tuple[Any, Any] | None:
+        keyword, _space, key = request.META.get("HTTP_AUTHORIZATION", "").partition(" ")
+        if keyword.lower() != "bearer":
+            return None
+        try:
+            token = api_tokens.find(key.strip())
+        except api_tokens.BadKey:
+            raise AuthenticationFailed(_("The token is unknown, revoked or expired.")) from None
+        return token.user, token
+
+    def authenticate_header(self, request: Request) -> str:
+        return "Bearer"
+
+
 class HoldsAssignment(BasePermission):
     def has_permission(self, request: Request, view: APIView) -> bool:
         return isinstance(request.auth, Assignment)
@@ -71,3 +88,20 @@ class HoldsSeat(BasePermission):
 class IsStaff(BasePermission):
     def has_permission(self, request: Request, view: APIView) -> bool:
         return bool(request.user and request.user.is_authenticated and request.user.is_staff)
+
+
+class StaffMay(IsStaff):
+    """Staff at the browser may do everything, their scripts only what their tokens are for.
+
+    Reading takes the scope `read`, anything else the view's `write_scope`.
+    """
+
+    def has_permission(self, request: Request, view: APIView) -> bool:
+        if not super().has_permission(request, view):
+            return False
+        if isinstance(request.auth, ApiToken):
+            reads = request.method in SAFE_METHODS
+            needed = ApiToken.Scope.READ if reads else getattr(view, "write_scope", None)
+            if needed not in request.auth.scopes:
+                raise PermissionDenied(_("The token lacks the scope %(scope)s.") % {"scope": needed})
+        return True

@@ -17,9 +17,10 @@ from rest_framework.views import APIView
 
 from gtm_hit.api.authentication import (
     AssignmentAuthentication,
+    BearerAuthentication,
     HoldsAssignment,
     HoldsSeat,
-    IsStaff,
+    StaffMay,
     StaffSession,
     WorkerAuthentication,
 )
@@ -30,11 +31,16 @@ from gtm_hit.ops import tokens, tutorial
 
 class MaySeePictures(BasePermission):
     def has_permission(self, request: Request, view: APIView) -> bool:
-        return any(rule().has_permission(request, view) for rule in (HoldsAssignment, HoldsSeat, IsStaff))
+        return any(rule().has_permission(request, view) for rule in (HoldsAssignment, HoldsSeat, StaffMay))
 
 
 class ImageView(APIView):
-    authentication_classes = [AssignmentAuthentication, WorkerAuthentication, StaffSession]
+    authentication_classes = [
+        AssignmentAuthentication,
+        WorkerAuthentication,
+        BearerAuthentication,
+        StaffSession,
+    ]
     permission_classes = [MaySeePictures]
 
     def perform_content_negotiation(self, request: Request, force: bool = False) -> Any:

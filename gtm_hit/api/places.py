@@ -12,13 +12,14 @@ from rest_framework.views import APIView
 
 from gtm_hit.api.authentication import (
     AssignmentAuthentication,
+    BearerAuthentication,
     HoldsAssignment,
     HoldsSeat,
-    IsStaff,
+    StaffMay,
     StaffSession,
     WorkerAuthentication,
 )
-from gtm_hit.models import Assignment, Dataset, Frame, Layer, Worker
+from gtm_hit.models import ApiToken, Assignment, Dataset, Frame, Layer, Worker
 from gtm_hit.ops import assignments, tokens
 from gtm_hit.ops.annotations import Author
 
@@ -62,8 +63,9 @@ class AssignmentPlace(APIView):
 
 
 class LayerPlace(APIView):
-    authentication_classes = [StaffSession]
-    permission_classes = [IsStaff]
+    authentication_classes = [BearerAuthentication, StaffSession]
+    permission_classes = [StaffMay]
+    write_scope = ApiToken.Scope.WORK
 
     def place(self, **kwargs: Any) -> Place:
         found = Layer.objects.select_related("dataset").filter(pk=kwargs["layer"]).first()

@@ -31,5 +31,13 @@ class StaffScheme(OpenApiAuthenticationExtension):
         return {"type": "apiKey", "in": "cookie", "name": "sessionid"}
 
 
+class BearerScheme(OpenApiAuthenticationExtension):
+    target_class = "gtm_hit.api.authentication.BearerAuthentication"
+    name = "bearer"
+
+    def get_security_definition(self, auto_schema: Any) -> dict[str, str]:
+        return {"type": "http", "scheme": "bearer", "description": "a key from `manage.py maketoken`"}
+
+
 def header(description: str) -> dict[str, str]:
     return {"type": "apiKey", "in": "header", "name": "Authorization", "description": description}

@@ -7,12 +7,15 @@ from drf_spectacular.views import SpectacularAPIView, SpectacularSwaggerView
 
 # Importing it tells drf-spectacular about the tokens.
 from gtm_hit.api import frames, schema, tutorial  # noqa: F401
-from gtm_hit.api.authentication import IsStaff, StaffSession
+from gtm_hit.api.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.images import ImageView
 from gtm_hit.api.missing import MissingView
 from gtm_hit.api.submission import SubmitView
 
-staff: dict[str, Any] = {"authentication_classes": [StaffSession], "permission_classes": [IsStaff]}
+staff: dict[str, Any] = {
+    "authentication_classes": [BearerAuthentication, StaffSession],
+    "permission_classes": [StaffMay],
+}
 assignment = [
     path("scene/", frames.AssignmentScene.as_view()),
     path("frames/", frames.AssignmentFrames.as_view()),

@@ -14,6 +14,7 @@ from gtm_hit.pages import (
     layers,
     releases,
     statistics,
+    tokens,
     work,
 )
 
@@ -29,5 +30,6 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *jobs.urlpatterns,
     *imports.urlpatterns,
     *calibration.urlpatterns,
+    *tokens.urlpatterns,
     *work.urlpatterns,
 ]

@@ -8,7 +8,7 @@ from django.contrib.auth.models import User
 from django.test import Client
 
 from gtm_hit.models import Assignment, Dataset, Layer
-from gtm_hit.ops import assignments, batches, tokens
+from gtm_hit.ops import api_tokens, assignments, batches, tokens
 from tests.work_scene import make_dataset, make_layer, make_worker
 
 
@@ -36,6 +36,13 @@ class Caller:
 
 def holder(assignment: Assignment) -> Caller:
     return Caller(f"Assignment {tokens.assignment_token(assignment)}")
+
+
+def bearer(*scopes: str) -> Caller:
+    """A script with a token of these scopes; all scripts act under one name."""
+    user, _made = User.objects.get_or_create(username="script", defaults={"is_staff": True})
+    _token, key = api_tokens.make(user, " ".join(scopes), scopes)
+    return Caller(f"Bearer {key}")
 
 
 def body(revision: int = 0, people: Any = (), **values: Any) -> dict[str, Any]:
