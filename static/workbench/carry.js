@@ -8,6 +8,11 @@ const BEFORE_LAST = 0.35; // share of the step before the last one; it evens out
 const FASTEST = 3; // m/s; faster than that nobody walked, somebody was mixed up
 const LOOK_BACK = 3; // frames a movement is read from
 
+/** Put there by the program, and not looked at since. */
+export function isGuess({ state, origin }) {
+  return state === CARRIED && (origin === "carried" || origin === "interpolated");
+}
+
 /**
  * The people of the first source, moved on the way they walked; who has no known movement stays where he was.
  * Works forwards and backwards, and never puts two people on one position.

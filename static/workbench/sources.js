@@ -1,11 +1,13 @@
 /** Frames that people can be carried over from: of the batch, and accepted ones beside it. */
+import { VALIDATED } from "./annotation.js";
+
 const LOOK_BACK = 3; // frames on one side that movement is read from
 
 /**
  * Frames with people before (`direction` -1) or after (1) a frame, nearest first.
  * @returns {{number, time, people: Map, outside: boolean}[]} `outside`: of the neighbouring batch
  */
-export function sourcesOn(store, scene, number, direction) {
+export function sourcesOn(store, scene, number, direction, counts = () => true) {
   const index = store.numbers.indexOf(number);
   const side = direction < 0 ? store.numbers.slice(0, index).reverse() : store.numbers.slice(index + 1);
   const inside = side
@@ -13,17 +15,24 @@ export function sourcesOn(store, scene, number, direction) {
     .map((one) => ({ number: one, people: store.people(one), outside: false }));
   const beyond = direction < 0 ? scene.neighbours.before : scene.neighbours.after;
   return [...inside, ...beyond.map((frame) => ({ ...frame, outside: true }))]
-    .filter(({ people }) => people.size)
+    .filter((source) => source.people.size && counts(source))
     .slice(0, LOOK_BACK)
     .map((source) => ({ ...source, time: scene.seconds(source.number) }));
 }
 
-/** The side whose people are nearer in time; the earlier one when both are as near. */
+/**
+ * The side whose people are nearer in time; the earlier one when both are as near. Frames in which nobody was
+ * looked at yet are guesses themselves and don't count.
+ */
 export function nearestSide(store, scene, number) {
-  const [before, after] = [-1, 1].map((direction) => sourcesOn(store, scene, number, direction));
+  const [before, after] = [-1, 1].map((direction) => sourcesOn(store, scene, number, direction, wasLookedAt));
   if (!before.length || !after.length) return before.length ? before : after;
   const time = scene.seconds(number);
   return time - before[0].time <= after[0].time - time ? before : after;
+}
+
+function wasLookedAt({ people, outside }) {
+  return outside || [...people.values()].some(({ state }) => state === VALIDATED);
 }
 
 /**

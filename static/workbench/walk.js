@@ -1,8 +1,9 @@
 import { carriedOf } from "./annotation.js";
-import { predictPeople } from "./carry.js";
+import { isGuess, predictPeople } from "./carry.js";
 import * as commands from "./commands.js";
 import { ask } from "./dialogs.js";
 import { between, isFilled } from "./keyframes.js";
+import { same } from "./merge.js";
 import { gettext, ngettext } from "./messages.js";
 import { nearestSide, withFreeNumbers } from "./sources.js";
 
@@ -22,7 +23,7 @@ export class Walk {
     this._held = null; // who was selected before a frame without that person
     this._ahead = 0;
     this._around = 0;
-    this._carried = new Set(); // frames people were carried into on this visit
+    this._brought = new Map(); // frame → people carried into it on this visit
     store.on("frame", () => this._prefetch());
     this._prefetch();
   }
@@ -89,26 +90,37 @@ export class Walk {
 
   /**
    * People for a frame of a batch that nobody has worked in yet: on the line between two keyframes, or moved on
-   * from the nearer side.
+   * from the nearer side. Guesses of an earlier visit are made anew: more may be known by now.
    */
   carryInto(number) {
     const { store, scene } = this;
     if (!this._isFresh(number)) return;
+    const here = store.people(number);
     const sources = nearestSide(store, scene, number);
-    if (!sources.length) return;
-    this._carried.add(number);
-    const expected = predictPeople(scene.grid, scene.seconds(number), sources, { except: store.people(number) });
+    if (!sources.length || (here.size && sources[0].outside)) return;
+    const except = new Map([...here].filter(([person]) => !sources[0].people.has(person)));
+    const expected = predictPeople(scene.grid, scene.seconds(number), sources, { except });
     const brought = sources[0].outside
       ? withFreeNumbers(store, expected)
-      : expected.map((one) => between(store, scene, one.person, number) ?? one);
+      : expected.map((one) => between(store, scene, one.person, number) ?? one).filter((one) => this._isNews(number, one));
+    this._brought.set(number, new Set([...(this._brought.get(number) ?? []), ...expected.map(({ person }) => person)]));
     if (brought.length) this.history.run(commands.bring(store, number, brought));
   }
 
-  /** Empty and never saved, or with nobody but people filled in from other frames. */
+  /** Whether nobody in a frame was looked at yet. Empty and saved, or emptied: somebody has been there. */
   _isFresh(number) {
     const { people, nobody, done } = this.store.frame(number);
-    if (!this.judging || nobody || done || this._carried.has(number)) return false;
-    return people.size ? [...people.values()].every(isFilled) : this.saver.revision(number) === 0;
+    if (!this.judging || nobody || done) return false;
+    if (people.size === 0) return this.saver.revision(number) === 0 && !this._brought.has(number);
+    return [...people.values()].every(isGuess);
+  }
+
+  /** Who was brought before and is not here any more was removed; who would stand where he stands is no news. */
+  _isNews(number, one) {
+    const here = this.store.people(number);
+    if (here.has(one.person)) return !same(here.get(one.person), one);
+    if (this._brought.has(number)) return !this._brought.get(number).has(one.person);
+    return [...here.values()].every(isFilled); // filled in from elsewhere: the others were never brought
   }
 
   /** Show a frame; whoever calls it has asked what has to be asked. */

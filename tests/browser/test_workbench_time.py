@@ -63,6 +63,24 @@ def test_people_walk_in_from_the_accepted_batch_before_under_their_numbers(
         assert metres_apart(one.position, int(truth)) < 0.1
 
 
+def test_guesses_are_made_anew_when_more_is_known(bench: Callable[..., Bench]) -> None:
+    """Looked at too early, the third frame had only the first to go by."""
+    opened = bench(people=1).open()
+    frame_cell(opened, 3).click()
+    expect(frame_cell(opened, 3)).to_have_attribute("data-state", "yellow")
+    frame_cell(opened, 2).click()
+    at_frame(opened, 2)
+    opened.press("Tab", *["Shift+ArrowRight"] * 2)
+    second = opened.stored(1)[0].position
+    frame_cell(opened, 3).click()
+    at_frame(opened, 3)
+    opened.saved()
+    first = int(opened.street.truth[0][0])
+    third = opened.stored(2)[0]
+    assert metres_apart(third.position, first) > 1.5 * metres_apart(second, first)
+    assert third.state == "carried"
+
+
 def test_undo_takes_back_that_a_frame_is_done_and_goes_there(bench: Callable[..., Bench]) -> None:
     opened = bench(people=2).open()
     opened.press("n")
