@@ -10,6 +10,8 @@ import { showSettings } from "./settings_dialog.js";
 import { Sightings } from "./sightings.js";
 import { Sizes } from "./sizes.js";
 
+const DOUBLE = 1000; // ms; the longest double click that systems offer is shorter
+
 /**
  * What an annotator can do, by the ids of the key table and by the pointer's intents. Every edit is a command
  * run by the history; every refusal says why, where the annotator looks.
@@ -54,8 +56,9 @@ export class Actions {
       reload: () => this.walk.reload(),
       save: () => this.save(),
       zoom: () => this.toggleZoom(),
-      outline: () => this.panes.set("outline", !this.panes.options.outline),
-      directions: () => this.panes.set("directions", !this.panes.options.directions),
+      outline: () => this.settings.set("outline", !this.settings.get("outline")),
+      grid: () => this.settings.set("grid", !this.settings.get("grid")),
+      directions: () => this.settings.set("directions", !this.settings.get("directions")),
       help: () => showHelp(),
       settings: () => showSettings(this.settings),
       controls: () => this.setControls(true),
@@ -66,7 +69,18 @@ export class Actions {
   // Pointer intents
 
   place(pane, at, event) {
-    this.moving.place(pane, at, event);
+    const { selection } = this.store;
+    this._placed = this.moving.place(pane, at, event) ? { pane, time: event.timeStamp, selection } : null;
+  }
+
+  /** A view was clicked twice: whom the first click has placed is taken back. */
+  enlarge(pane, event) {
+    if (this._placed?.pane === pane && event.timeStamp - this._placed.time < DOUBLE) {
+      this.history.undo();
+      this.store.select(this._placed.selection);
+    }
+    this._placed = null;
+    this.views.enlarge(pane);
   }
 
   moveHere(pane, at, event) {

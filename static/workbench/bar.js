@@ -16,7 +16,7 @@ export class Bar {
     store.on("change", () => this._later());
     store.on("frame", () => this._later());
     saver.on("status", () => this._later());
-    panes.on("zoom", () => this._later());
+    for (const name of ["zoom", "options"]) panes.on(name, () => this._later());
     this._update();
   }
 
@@ -54,6 +54,7 @@ export class Bar {
       this._button("undo", "↶", { "aria-label": gettext("Undo") }),
       this._button("redo", "↷", { "aria-label": gettext("Redo") }),
       ...this._toggles,
+      this._button("views", gettext("Views")),
       element("button", { type: "button", className: "quiet", title: gettext("Dark or light"), "aria-label": gettext("Dark or light"), onclick: toggleTheme }, "◐"),
       this._button("settings", "⚙", { "aria-label": gettext("Settings") }),
       this._button("help", "?", { "aria-label": gettext("Keys and mouse") }),

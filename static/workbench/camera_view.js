@@ -86,7 +86,8 @@ export class CameraView {
   /** What to draw for one visible person. */
   item(annotation, look, transform, options) {
     const box = paneBox(this.box(annotation), transform);
-    const label = options.labels && annotation.person !== null ? String(annotation.person) : "";
+    const label = options.labelOpacity && annotation.person !== null ? String(annotation.person) : "";
+    const opacity = look.selected ? { box: 1, label: 1 } : { box: options.boxOpacity, label: options.labelOpacity };
     const foot = look.selected ? this.foot(annotation) : null;
     return {
       id: annotation.person,
@@ -95,7 +96,7 @@ export class CameraView {
       order: look.selected ? Infinity : box.ymax,
       bounds: boxBounds(box, label),
       draw: (ctx) => {
-        drawBox(ctx, box, look, label, look.selected ? 1 : options.opacity);
+        drawBox(ctx, box, look, label, opacity);
         if (foot) {
           const { x, y } = transform.toPane(foot.x, foot.y);
           drawFoot(ctx, x, y, look, 3);

@@ -22,7 +22,7 @@ const GROUND = {
 export function arrowSteps(panes, annotation) {
   if (panes.held?.steps) return panes.held.steps;
   if (panes.settings.get("arrowAxes") === "ground") return GROUND;
-  const seeing = [panes.active, ...panes.all].find((pane) => pane.view.box(annotation));
+  const seeing = [panes.active, ...panes.shown].find((pane) => pane.view.box(annotation));
   return seeing?.view.axes(annotation) ?? GROUND;
 }
 

@@ -41,6 +41,8 @@ function mouseRows() {
     [gettext("Drag a foot, a box or a dot"), gettext("move that person; Escape leaves them where they were")],
     [gettext("Drag the top of the selected box"), gettext("the person's height")],
     [gettext("Wheel"), gettext("zoom this view")],
-    [gettext("Drag"), gettext("move the zoomed picture")],
+    [gettext("Drag"), gettext("move the zoomed picture; with the middle button also over a person")],
+    [gettext("Double click"), gettext("this view large with the others around it, and back")],
+    [gettext("Touch"), gettext("tap: as a click; one finger moves the picture, two zoom it")],
   ];
 }

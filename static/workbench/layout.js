@@ -4,6 +4,7 @@
  */
 const GAP = 2;
 const PANEL = 248; // px, a panel column
+const LARGE_COUNTS = 1.1; // against the width of the small ones
 const PANEL_CELL = 300; // px, the smallest cell that can hold the panel
 
 /** Pure. @returns {{columns, rows, panel: "cell"|"column", width, height}} of one pane */
@@ -24,6 +25,29 @@ export function arrange(count, room, aspect, panelShown = true) {
   return best;
 }
 
+/**
+ * One large pane in the upper left, the others beside and below it. Pure.
+ * @returns {{columns, rows, largeColumns, largeRows}} cells of the grid, and how many of them the large one takes
+ */
+export function arrangeAround(count, room, aspect) {
+  const others = count - 1;
+  const width = room.width - PANEL - GAP;
+  let best = null;
+  for (let columns = 2; columns <= count; columns += 1) {
+    for (let rows = 1; rows <= count; rows += 1) {
+      for (const largeRows of [rows - 1, rows]) {
+        const cells = columns * rows - (columns - 1) * largeRows;
+        if (largeRows === 0 || cells < others) continue;
+        const [small, high] = [width / columns, room.height / rows];
+        const large = Math.min(small * (columns - 1), high * largeRows * aspect);
+        const worth = LARGE_COUNTS * large + Math.min(small, high * aspect);
+        if (!best || worth > best.worth + 0.5) best = { columns, rows, largeColumns: columns - 1, largeRows, worth };
+      }
+    }
+  }
+  return best;
+}
+
 /** Keeps a grid of panes arranged while its room changes. */
 export class Layout {
   constructor(container, panes, panel, aspect) {
@@ -31,18 +55,31 @@ export class Layout {
     this._panes = panes;
     this._panel = panel;
     this._aspect = aspect;
+    this._large = null;
     container.append(panes.element, panel);
     this._observer = new ResizeObserver(() => this.update());
     this._observer.observe(container);
     this.update();
   }
 
+  /** @param {object|null} pane the one that is large; null: all alike */
+  setLarge(pane) {
+    this._large = pane;
+    this.update();
+  }
+
   update() {
     const { clientWidth: width, clientHeight: height } = this._container;
     if (!width || !height) return;
-    const { columns, rows, panel } = arrange(this._panes.all.length, { width, height }, this._aspect);
-    this._panes.element.style.setProperty("--columns", columns);
-    this._panes.element.style.setProperty("--rows", rows);
+    const { shown, all } = this._panes;
+    const arrangement = (this._large ? arrangeAround : arrange)(shown.length, { width, height }, this._aspect);
+    const { columns, rows, panel = "column", largeColumns = 1, largeRows = 1 } = arrangement;
+    const { style } = this._panes.element;
+    style.setProperty("--columns", columns);
+    style.setProperty("--rows", rows);
+    style.setProperty("--large-columns", largeColumns);
+    style.setProperty("--large-rows", largeRows);
+    for (const pane of all) pane.element.classList.toggle("large", pane === this._large);
     this._container.dataset.panel = panel;
     const parent = panel === "cell" ? this._panes.element : this._container;
     if (this._panel.parentElement !== parent) parent.append(this._panel);

@@ -85,7 +85,7 @@ export class MapView {
   item(annotation, look, transform, options) {
     const foot = this.foot(annotation);
     const { x, y } = transform.toPane(foot.x, foot.y);
-    const label = options.labels && annotation.person !== null ? String(annotation.person) : "";
+    const label = options.labelOpacity && annotation.person !== null ? String(annotation.person) : "";
     const radius = Math.max(DOT, this._scene.cylinderOf(annotation).radius * transform.scale);
     const side = Math.max(radius + 8, labelWidth(label) / 2 + 2);
     return {
@@ -97,7 +97,10 @@ export class MapView {
       draw: (ctx) => {
         drawFoot(ctx, x, y, look, radius);
         if (look.selected) drawRing(ctx, x, y, radius + 4, look.colour);
-        if (label) drawLabel(ctx, x, y - radius - (look.selected ? 7 : 3), label, look);
+        if (!label) return;
+        ctx.globalAlpha = look.selected ? 1 : options.labelOpacity;
+        drawLabel(ctx, x, y - radius - (look.selected ? 7 : 3), label, look);
+        ctx.globalAlpha = 1;
       },
     };
   }

@@ -6,11 +6,11 @@ const HANDLE = 5;
 /** How far a mark reaches beyond its box: line width, handles, the double line. */
 export const MARGIN = 9;
 
-/** A person's rectangle with its number above. `opacity` is for the box, not for the label. */
-export function drawBox(ctx, box, look, label, opacity = 1) {
+/** A person's rectangle with its number above. */
+export function drawBox(ctx, box, look, label, opacity = { box: 1, label: 1 }) {
   const [x, y] = [box.xmin, box.ymin];
   const [width, height] = [box.xmax - box.xmin, box.ymax - box.ymin];
-  ctx.globalAlpha = opacity;
+  ctx.globalAlpha = opacity.box;
   ctx.lineWidth = look.width + 1.5;
   ctx.strokeStyle = RIM;
   ctx.setLineDash([]);
@@ -20,8 +20,9 @@ export function drawBox(ctx, box, look, label, opacity = 1) {
   ctx.setLineDash(look.dash);
   ctx.strokeRect(x, y, width, height);
   if (look.selected) drawSelection(ctx, x, y, width, height, look);
-  ctx.globalAlpha = 1;
+  ctx.globalAlpha = opacity.label;
   if (label) drawLabel(ctx, x + width / 2, labelBottom(box), label, look);
+  ctx.globalAlpha = 1;
 }
 
 /** Above the box; inside it where the box reaches out of the pane. */

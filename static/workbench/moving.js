@@ -26,15 +26,19 @@ export class Moving {
     );
   }
 
+  /** @returns {boolean} whether somebody new stands there now */
   place(pane, at, event) {
-    if (this.guard.refused(event)) return;
-    const position = this._positionUnder(pane, at, event);
-    if (position === null) return;
+    const position = this.guard.refused(event) ? null : this._positionUnder(pane, at, event);
+    if (position === null) return false;
     const occupant = this.store.occupant(position);
-    if (occupant) return this.guard.say(event, gettext("Person {person} stands exactly here", { person: occupant.person }));
+    if (occupant) {
+      this.guard.say(event, gettext("Person {person} stands exactly here", { person: occupant.person }));
+      return false;
+    }
     this.ghost.hide();
     this.history.run(commands.place(this.store, { position }));
     this.sightings.begin(pane, at);
+    return true;
   }
 
   /** @returns {boolean} whether the selected person stands there now */

@@ -2,7 +2,7 @@ import { element, setText } from "./dom.js";
 import { lookOf } from "./looks.js";
 import { gettext } from "./messages.js";
 import { damage, overlaps } from "./regions.js";
-import { clamped, fit } from "./transform.js";
+import { clamped, fit, resized } from "./transform.js";
 
 /**
  * One view on the screen: a canvas with the picture and a canvas with the marks. It paints what the model says
@@ -38,6 +38,24 @@ export class Pane {
     this._scheduler.mark(this);
   }
 
+  get hidden() {
+    return this.element.hidden;
+  }
+
+  set hidden(hidden) {
+    this.element.hidden = hidden;
+  }
+
+  /** A filter of the page over the picture. */
+  setFilter(filter) {
+    this._picture.style.filter = filter;
+  }
+
+  /** Take up the room there is now, not only after the next layout. */
+  measure() {
+    this._resize();
+  }
+
   get fitted() {
     return this._fitted;
   }
@@ -59,7 +77,7 @@ export class Pane {
   }
 
   paint() {
-    if (!this.transform) return;
+    if (!this.transform || this.hidden) return;
     if (this._dirty.picture) this._paintPicture();
     this._paintMarks(this._dirty.marks);
     this._dirty = { picture: false, marks: false };
@@ -91,15 +109,17 @@ export class Pane {
 
   _resize() {
     const { clientWidth: width, clientHeight: height } = this.element;
-    if (!width || !height) return;
-    this._ratio = window.devicePixelRatio || 1;
+    const ratio = window.devicePixelRatio || 1;
+    const before = this.room;
+    if (!width || !height || (width === before.width && height === before.height && ratio === this._ratio)) return;
+    this._ratio = ratio;
     for (const canvas of [this._picture, this._marks]) {
       canvas.width = Math.round(width * this._ratio);
       canvas.height = Math.round(height * this._ratio);
     }
     this.room = { width, height };
     if (!this.transform || this._fitted) this.fit();
-    else this.look(this.transform);
+    else this.look(resized(this.transform, before, this.room));
     this._markAll();
     this.paint(); // resizing a canvas empties it: no blank frame in between
   }
@@ -108,6 +128,7 @@ export class Pane {
     this._fitted = fitted;
     if (this.transform?.equals(transform)) return;
     this.transform = transform;
+    this.element.dataset.zoom = (transform.scale / fit(this.view.size, this.room).scale).toFixed(3);
     this._markAll();
   }
 

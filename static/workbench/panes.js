@@ -13,7 +13,7 @@ const [ABOVE_FEET, BELOW_FEET] = [0.25, 0.05]; // of a person's height, shown cl
 
 /**
  * All panes and what they have in common: options, the active view, zoom to the selected person. It listens to
- * the store and marks what has to be painted again. Emits `active` {view} and `zoom` {on}.
+ * the store and marks what has to be painted again. Emits `active` {view}, `zoom` {on} and `options`.
  */
 export class Panes extends Emitter {
   constructor({ scene, store, images, settings, options }) {
@@ -35,6 +35,7 @@ export class Panes extends Emitter {
     this.all = views.map((view) => new Pane(view, model, this._scheduler));
     this.element.append(...this.all.map((pane) => pane.element));
     this.active = this.all[0];
+    this.active.element.classList.add("active");
     this._follow(store, images);
   }
 
@@ -50,6 +51,11 @@ export class Panes extends Emitter {
     this.active = pane;
     this.markPeople();
     this.emit("active", { view: pane.view });
+  }
+
+  /** Those that are not hidden; there is always one. */
+  get shown() {
+    return this.all.filter((pane) => !pane.hidden);
   }
 
   markPeople(all = false) {
@@ -78,12 +84,13 @@ export class Panes extends Emitter {
     this.options[name] = value;
     this.markPictures();
     this.markPeople(true);
+    this.emit("options");
   }
 
   /** Every view to the selected person, or back to the whole picture. */
   zoom(on) {
     this.zoomed = on && this.store.selected() !== undefined;
-    for (const pane of this.all) {
+    for (const pane of this.shown) {
       if (this.zoomed) this._zoomIn(pane);
       else pane.fit();
     }
@@ -109,7 +116,7 @@ export class Panes extends Emitter {
   _keepInSight() {
     const person = this.store.selected();
     if (!this.zoomed || !person) return;
-    for (const pane of this.all) {
+    for (const pane of this.shown) {
       const box = this._shownPart(pane, person);
       if (!box) continue;
       const { x: xmin, y: ymin } = pane.transform.toPane(box.xmin, box.ymin);
@@ -117,6 +124,19 @@ export class Panes extends Emitter {
       const room = { xmin: 0, ymin: 0, xmax: pane.room.width, ymax: pane.room.height };
       const inside = xmin >= 0 && ymin >= 0 && xmax <= room.xmax && ymax <= room.ymax;
       if (!inside || !overlaps({ xmin, ymin, xmax, ymax }, room)) this._zoomIn(pane);
+    }
+  }
+
+  /** Panes that were zoomed by hand go to a selected person they do not show, and stay as large as they are. */
+  _showSelected() {
+    const person = this.store.selected();
+    if (!person) return;
+    for (const pane of this.shown) {
+      const box = !pane.fitted && pane.view.box(person);
+      if (!box) continue;
+      const { x, y } = pane.transform.toPane((box.xmin + box.xmax) / 2, (box.ymin + box.ymax) / 2);
+      const { width, height } = pane.room;
+      if (x < 0 || y < 0 || x > width || y > height) pane.look(pane.transform.moved(width / 2 - x, height / 2 - y));
     }
   }
 
@@ -129,6 +149,7 @@ export class Panes extends Emitter {
     store.on("selection", ({ after }) => {
       this.markPeople();
       if (this.zoomed) this.zoom(after !== null);
+      else this._showSelected();
     });
     store.on("frame", () => this.markPictures());
     images.on("picture", ({ frame, camera }) => {

@@ -7,7 +7,7 @@ const EDGE = 5; // CSS pixels around the top of the selected box that mean the t
 const TALL = 30; // CSS pixels a box must have for its top to be taken hold of
 
 /**
- * Pointer events of the panes, as intents: `place`, `select`, `moveHere`, `sight`, `hover`, `leave`, and a drag of
+ * Pointer events of the panes, as intents: `place`, `select`, `moveHere`, `sight`, `hover`, `leave`, `enlarge`, and a drag of
  * a person (`beginDrag`, `drag`, `drop`, `cancelDrag`). Wheel and other drags change a pane's pan and zoom directly.
  */
 export class Pointer {
@@ -54,6 +54,7 @@ export class Pointer {
     element.addEventListener("pointerup", (event) => this._onUp(pane, event));
     element.addEventListener("pointercancel", () => this._forget(pane));
     element.addEventListener("pointerleave", () => this._intents.leave());
+    element.addEventListener("dblclick", (event) => event.target.closest("button") || this._intents.enlarge(pane, event));
     element.addEventListener("contextmenu", (event) => this._onMenu(pane, event));
     element.addEventListener("wheel", (event) => this._onWheel(pane, event), { passive: false });
   }

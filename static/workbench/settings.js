@@ -48,6 +48,14 @@ const TABLE = {
   },
   pathsOnMap: { value: "selected", group: "time", label: () => gettext("Paths on the map"), choices: pathChoices },
   pathsInViews: { value: "none", group: "time", label: () => gettext("Paths in the views"), choices: pathChoices },
+  labelOpacity: { value: 1, group: "seeing", label: () => gettext("Numbers of people"), range: { min: 0, max: 1, step: 0.1 }, hint: () => gettext("At the left end: none.") },
+  boxOpacity: { value: 1, group: "seeing", label: () => gettext("Boxes, except the selected one"), range: { min: 0.1, max: 1, step: 0.1 } },
+  outline: { value: false, group: "seeing", label: () => gettext("Show the border of the ground area") },
+  grid: { value: false, group: "seeing", label: () => gettext("Show a grid of metres on the ground") },
+  directions: { value: false, group: "seeing", label: () => gettext("Show where the arrow keys lead") },
+  hiddenViews: { value: [] },
+  largeView: { value: "" },
+  tones: { value: {} },
   filmstrip: { value: false },
   warningsOpen: { value: true },
 };
@@ -139,6 +147,9 @@ function fits(row, value) {
   if (row.range) return value >= row.range.min && value <= row.range.max;
   return true;
 }
+
+/** Choices that are also options of display, by the name they have there. */
+export const DISPLAYED = ["labelOpacity", "boxOpacity", "outline", "grid", "directions"];
 
 function kind(value) {
   return Array.isArray(value) ? "array" : typeof value;

@@ -59,6 +59,13 @@ export function clamped(transform, source, pane, limit) {
   );
 }
 
+/** In a pane of another size: the same place in the middle, as much larger as the pane. */
+export function resized(transform, before, after) {
+  const { x, y } = transform.toSource(before.width / 2, before.height / 2);
+  const factor = Math.min(after.width / before.width, after.height / before.height);
+  return centred(transform.scale * factor, x, y, after);
+}
+
 function clampOffset(offset, length, room) {
   const slack = room / 2; // a foot at the border of an image can still be brought to the middle
   return Math.min(slack, Math.max(room - length - slack, offset));

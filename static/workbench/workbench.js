@@ -17,11 +17,13 @@ import { PeoplePanel } from "./people_panel.js";
 import { Playback } from "./playback.js";
 import { Pointer } from "./pointer.js";
 import { Round } from "./round.js";
-import { Settings } from "./settings.js";
+import { DISPLAYED, Settings } from "./settings.js";
 import { TimeActions } from "./time_actions.js";
 import { Timeline } from "./timeline.js";
 import { Tutorial } from "./tutorial.js";
 import { UndoActions } from "./undo_actions.js";
+import { Views } from "./views.js";
+import { ViewsMenu } from "./views_menu.js";
 import { Walk } from "./walk.js";
 import { WarningActions } from "./warning_actions.js";
 import { warningItems } from "./warning_marks.js";
@@ -62,7 +64,8 @@ export function buildWorkbench(root, session, { mode, home }) {
   root.replaceChildren(bar.element, stage, filmstrip.element, timeline.element, notices.element);
   new Pointer(panes, actions);
   connectKeyboard(actions, bar, perform);
-  new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
+  const layout = new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
+  chooseViews(root, actions, { panes, layout, settings, notices });
   if (mode === "tutorial") startTutorial(panel, { ...session, panes, walk, home });
   else {
     const frameHistory = new FrameHistory({ ...session, panes, notices, guard: actions.guard });
@@ -87,6 +90,16 @@ function connectKeyboard(actions, bar, perform) {
     if (on) bar.element.querySelector("a, button").focus();
     else document.activeElement?.blur();
   };
+}
+
+/** What is seen and how, as it was chosen last. */
+function chooseViews(root, actions, { panes, layout, settings, notices }) {
+  const views = new Views({ panes, layout, settings, notices });
+  const menu = new ViewsMenu(views);
+  root.append(menu.element);
+  actions.views = views;
+  actions.use({ ...views.table(), views: () => menu.toggle() });
+  for (const name of DISPLAYED) settings.watch(name, (value) => panes.set(name, value));
 }
 
 /** @returns {HTMLElement} the list of warnings; the same warnings are drawn in the panes */
@@ -126,7 +139,7 @@ function watch({ saver, store, scene, images, activity }, panes, notices) {
 }
 
 function startOptions() {
-  return { outline: false, directions: false, grid: false, labels: true, opacity: 1, mapColours: mapColours() };
+  return { outline: false, directions: false, grid: false, labelOpacity: 1, boxOpacity: 1, mapColours: mapColours() };
 }
 
 function mapColours() {
