@@ -24,7 +24,7 @@ COARSE = 24.0  # metres beyond which the ground's pattern needs them
 TILE = (90, 160)  # rows and columns worked on at a time, so that arrays stay in the cache
 FAR = 1e4  # metres
 SHADOW_CELL = 0.03  # metres
-SURROUNDINGS = Area(-24.0, 24.0, -48.0, 66.0)
+SURROUNDINGS = Area(-18.0, 25.0, -30.0, 52.0)  # where shadows of things that stand still are kept
 
 
 @dataclass(frozen=True)
