@@ -17,8 +17,7 @@ const SCOPES = [
  */
 export async function chooseIdentity({ scene, store, history, mapColours }, start) {
   const choice = { other: null, scope: "everywhere", keep: "present", ...start };
-  const clashWord = element("span");
-  const clash = element("div", { className: "identity-clash" }, clashWord);
+  const clash = element("div", { className: "identity-clash" });
   const said = element("p", { className: "identity-problem", role: "status" });
   const preview = element("div", { className: "identity-preview" });
   let found = null;
@@ -26,9 +25,9 @@ export async function chooseIdentity({ scene, store, history, mapColours }, star
     found = plan(store, choice);
     const patch = found.patch && history.preview(found.patch);
     clash.hidden = !found.both.length;
-    setText(clashWord, clashWords(found.both, choice));
+    if (found.both.length) askWhoStays(clash, found.both, choice, change);
     setText(said, found.problem ?? "");
-    preview.replaceChildren(...(patch ? [changeList(store, patch), beforeAndAfter(scene, store, mapColours, patch)] : []));
+    preview.replaceChildren(...(patch ? [changeList(store, patch), beforeAndAfter(scene, store, mapColours, patch, [choice.person, choice.other])] : []));
     const apply = preview.closest("dialog")?.querySelector('[data-answer="apply"]');
     if (apply) apply.disabled = !found.patch;
   };
@@ -37,7 +36,6 @@ export async function chooseIdentity({ scene, store, history, mapColours }, star
     update();
   };
   const controls = fields(scene, store, choice, change);
-  clash.append(keepMenu(choice, change));
   update();
   const answer = ask({
     title: titleOf(choice),
@@ -106,39 +104,38 @@ function frameCount(store, person) {
   return ngettext("in {n} frame", "in {n} frames", length);
 }
 
-/** How near the two are where they are nearest in time: at the ends of either's path. */
+/** How near the two are: here if both are here, else where they are nearest in time, at the ends of their paths. */
 function metresApart(scene, store, person, other) {
+  const between = (here, there) => {
+    const [from, to] = [scene.metres(store.person(person, here).position), scene.metres(store.person(other, there).position)];
+    return Math.hypot(from.x - to.x, from.y - to.y);
+  };
+  if (store.person(person) && store.person(other)) return between(store.current, store.current);
   const [ours, theirs] = [framesWith(store, person), framesWith(store, other)];
   const pairs = [
     ...[ours[0], ours.at(-1)].map((number) => [number, closest(theirs, number)]),
     ...[theirs[0], theirs.at(-1)].map((number) => [closest(ours, number), number]),
   ];
-  return Math.min(
-    ...pairs.map(([here, there]) => {
-      const [from, to] = [scene.metres(store.person(person, here).position), scene.metres(store.person(other, there).position)];
-      return Math.hypot(from.x - to.x, from.y - to.y);
-    }),
-  );
+  return Math.min(...pairs.map(([here, there]) => between(here, there)));
 }
 
 function closest(numbers, wanted) {
   return numbers.reduce((best, one) => (Math.abs(one - wanted) < Math.abs(best - wanted) ? one : best));
 }
 
-function keepMenu(choice, change) {
-  const [moved, present] = choice.kind === "join" ? [choice.other, choice.person] : [choice.person, null];
+/** Said again only when it is about other people or frames: a menu in use is left alone. */
+function askWhoStays(clash, both, choice, change) {
+  const { person, other, kind, keep } = choice;
+  const words = ngettext("{person} and {other} are both marked in {n} frame:", "{person} and {other} are both marked in {n} frames:", both.length, { person, other });
+  if (clash.firstChild?.textContent === words) return;
+  const [moved, present] = kind === "join" ? [other, person] : [person, other];
   const options = [
-    ["present", choice.kind === "join" ? gettext("keep where {person} stands", { person: present }) : gettext("they are the same: keep where that person stands")],
-    ["moved", choice.kind === "join" ? gettext("keep where the other stands") : gettext("they are the same: keep where {person} stands", { person: moved })],
-    ...(choice.kind === "rename" ? [["both", gettext("they are two people: swap their numbers")]] : []),
-  ].map(([keep, label]) => element("option", { value: keep, selected: keep === choice.keep }, label));
-  return element("select", { className: "keep", "aria-label": gettext("Who stays"), onchange: ({ target }) => change({ keep: target.value }) }, options);
-}
-
-function clashWords(both, { person, other }) {
-  return both.length
-    ? ngettext("{person} and {other} are both marked in {n} frame:", "{person} and {other} are both marked in {n} frames:", both.length, { person, other })
-    : "";
+    ["present", gettext("they are the same: keep where {person} stands", { person: present })],
+    ["moved", gettext("they are the same: keep where {person} stands", { person: moved })],
+    ...(kind === "rename" ? [["both", gettext("they are two people: swap their numbers")]] : []),
+  ].map(([value, label]) => element("option", { value, selected: value === keep }, label));
+  const menu = element("select", { className: "keep", "aria-label": gettext("Who stays"), onchange: ({ target }) => change({ keep: target.value }) }, options);
+  clash.replaceChildren(element("span", {}, words), menu);
 }
 
 function titleOf({ kind, person }) {

@@ -3,7 +3,7 @@ import { element } from "./dom.js";
 import { CYAN } from "./looks.js";
 import { MapView } from "./map_view.js";
 import { drawFoot, drawLabel, drawPath } from "./marks.js";
-import { gettext } from "./messages.js";
+import { gettext, ngettext } from "./messages.js";
 import { union } from "./regions.js";
 import { fit, focus } from "./transform.js";
 
@@ -34,11 +34,13 @@ export function changeList(store, patch) {
   return element("ul", { className: "change-list", tabIndex: 0, "aria-label": gettext("What changes") }, items);
 }
 
-/** Two maps, before and after, of everybody the patch touches. */
-export function beforeAndAfter(scene, store, mapColours, patch) {
-  const persons = [...new Set(patch.edits.filter((edit) => !edit.flags).map(({ person }) => person))].sort((one, other) => one - other);
+/** Two maps, before and after, of everybody the patch touches and of `others` who matter beside them. */
+export function beforeAndAfter(scene, store, mapColours, patch, others = []) {
+  const edits = patch.edits.filter((edit) => !edit.flags);
+  const concerned = new Set([...edits.map(({ person }) => person), ...others.filter((person) => person !== null)]);
+  const persons = [...concerned].sort((one, other) => one - other);
   const before = pathsOf(store, persons, new Map());
-  const after = pathsOf(store, persons, new Map(patch.edits.filter((edit) => !edit.flags).map((edit) => [`${edit.frame} ${edit.person}`, edit.after])));
+  const after = pathsOf(store, persons, new Map(edits.map((edit) => [`${edit.frame} ${edit.person}`, edit.after])));
   const view = new MapView(scene, "");
   const bounds = boundsOf(view, [...before, ...after].flatMap(({ people }) => people));
   const figure = (title, paths) =>
@@ -79,12 +81,12 @@ function boundsOf(view, people) {
 
 function drawn(view, bounds, mapColours, paths, current, title) {
   const ratio = window.devicePixelRatio || 1;
-  const label = `${title}: ${paths.map(({ person, people }) => gettext("person {person} in {n} frames", { person, n: people.length })).join(", ")}`;
+  const label = `${title}: ${paths.map(({ person, people }) => ngettext("person {person} in {n} frame", "person {person} in {n} frames", people.length, { person })).join(", ")}`;
   const canvas = element("canvas", { width: SIZE.width * ratio, height: SIZE.height * ratio, role: "img", "aria-label": label });
   const ctx = canvas.getContext("2d");
   ctx.scale(ratio, ratio);
   const transform = bounds ? focus(bounds, SIZE, 1, Infinity) : fit(view.size, SIZE);
-  view.paintBackground(ctx, transform, null, { mapColours });
+  view.paintBackground(ctx, transform, null, { mapColours, footprints: false });
   paths.forEach((path, index) => drawPerson(ctx, view, transform, path, current, COLOURS[index % COLOURS.length], DASHES[index % DASHES.length]));
   return canvas;
 }

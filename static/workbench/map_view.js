@@ -77,7 +77,7 @@ export class MapView {
     ctx.fillStyle = style.ground;
     ctx.fillRect(corner.x, corner.y, width * transform.scale, height * transform.scale);
     this._paintMetres(ctx, transform, style, width, height);
-    this._paintCameras(ctx, transform, style);
+    if (options.footprints !== false) this._paintCameras(ctx, transform, style);
   }
 
   paintGuides() {}

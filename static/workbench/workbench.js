@@ -11,6 +11,7 @@ import { Keyboard } from "./keyboard.js";
 import { Layout } from "./layout.js";
 import { gettext } from "./messages.js";
 import { Notices } from "./notices.js";
+import { panelTools } from "./panel_tools.js";
 import { Panes } from "./panes.js";
 import { Paths } from "./paths.js";
 import { PeoplePanel } from "./people_panel.js";
@@ -70,7 +71,8 @@ export function buildWorkbench(root, session, { mode, home }) {
   else {
     const frameHistory = new FrameHistory({ ...session, panes, notices, guard: actions.guard });
     actions.use(frameHistory.table());
-    panel.element.append(warn(session, { settings, panes, notices, walk, actions, identity }), frameHistory.element);
+    const list = warn(session, { settings, panes, notices, walk, actions, identity });
+    panel.element.append(panelTools(store, perform), list, frameHistory.element);
   }
   watch(session, panes, notices);
   walk.carryInto(store.current);

@@ -1,0 +1,36 @@
+import { element } from "./dom.js";
+import { keyName, keyTable } from "./keys.js";
+import { gettext } from "./messages.js";
+
+const ABOUT_PERSON = [
+  ["rename", () => gettext("Rename")],
+  ["split", () => gettext("Split")],
+  ["join", () => gettext("Join")],
+  ["swap", () => gettext("Swap")],
+  ["removeMore", () => gettext("Remove")],
+];
+
+/** Buttons under the list of people, for whoever works with the mouse: who is who, and the frame's history. */
+export function panelTools(store, perform) {
+  const keys = new Map(keyTable().map((row) => [row.id, row]));
+  const button = (id, text) =>
+    element(
+      "button",
+      {
+        type: "button",
+        className: "quiet",
+        "data-action": id,
+        title: `${keys.get(id).label} (${keyName(keys.get(id).keys[0])})`,
+        onclick: (event) => {
+          if (event.detail > 0) event.currentTarget.blur(); // Space would press it again
+          perform(id);
+        },
+      },
+      text,
+    );
+  const person = ABOUT_PERSON.map(([id, text]) => button(id, text()));
+  const update = () => person.forEach((one) => (one.disabled = store.selection === null));
+  store.on("selection", update);
+  update();
+  return element("div", { className: "panel-tools" }, person, button("history", gettext("History")));
+}
