@@ -8,13 +8,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from django.contrib.auth.models import User
+from django.test import Client
 from playwright.sync_api import Page, expect
+from pytest_django.live_server_helper import LiveServer
 
 from gtm_hit.geometry.camera import project
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
-from gtm_hit.models import Annotation
+from gtm_hit.models import Annotation, Frame, Layer
 from tests.browser.bench import Bench, best_view, metres_apart, well_seen
-from tests.browser.street import CYLINDER, GRID, annotate, cameras
+from tests.browser.street import CYLINDER, FRAME_STEP, GRID, annotate, cameras, make_street
 from tests.browser.test_workbench_modules import run
 from tests.browser.test_workbench_moving import all_saved
 
@@ -314,3 +317,29 @@ def test_a_setting_tells_who_watches_it_and_refuses_what_it_cannot_be(module_pag
         """,
     )
     assert result == {"heard": [True, False], "refused": True}
+
+
+def test_a_height_reaches_frames_of_a_long_layer_that_were_not_loaded_yet(
+    page: Page, client: Client, live_server: LiveServer
+) -> None:
+    street = make_street(people=1, frames=1)
+    later = Frame.objects.bulk_create(
+        Frame(dataset=street.dataset, number=FRAME_STEP * index) for index in range(1, 50)
+    )
+    layer = Layer.objects.create(dataset=street.dataset, name="review", kind=Layer.Kind.STAFF, last_person=1)
+    position = int(street.truth[0][0])
+    Annotation.objects.bulk_create(
+        Annotation(layer=layer, frame=frame, person=1, position=position)
+        for frame in [*street.frames, *later]
+    )
+    client.force_login(User.objects.create_user("vera", is_staff=True))
+    session = client.cookies["sessionid"].value
+    page.context.add_cookies([{"name": "sessionid", "value": session, "url": live_server.url}])
+    page.goto(f"{live_server.url}/datasets/street/layers/review/")
+    expect(page.locator("#workbench")).to_have_attribute("data-ready", "true")
+    page.keyboard.press("Tab")
+    page.keyboard.press("PageUp")
+    expect(page.locator(".people li .size")).to_have_text("1.82 m")
+    page.keyboard.press("s")
+    expect(page.get_by_text("Everything is saved").first).to_be_attached()
+    assert set(Annotation.objects.filter(layer=layer).values_list("height", flat=True)) == {1.82}
