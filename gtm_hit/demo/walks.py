@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -62,9 +63,9 @@ def make_walks(scene: Scene, rng: np.random.Generator) -> Walks:
     planner = _Planner(scene, rng)
     crowd = scene.crowd
     for size in crowd.standing_groups:
-        planner.add(lambda size=size: planner.circle(size))  # type: ignore[misc]
+        planner.add(partial(planner.circle, size))
     for _ in range(crowd.standing_alone):
-        planner.add(lambda: planner.circle(1))
+        planner.add(partial(planner.circle, 1))
     for _ in range(crowd.pairs):
         planner.add(planner.pair)
     for index in range(crowd.walkers):
