@@ -41,13 +41,13 @@ export class Tutorial {
     this.element = element(
       "section",
       { className: "tutorial", "aria-label": gettext("Tutorial"), onkeydown: keepForButtons },
-      this._progress,
+      element("div", { className: "tutorial-head" }, this._progress, this._back, this._again),
       this._title,
       this._text,
       this._matters,
       this._hint,
       this._verdict,
-      element("div", { className: "tutorial-buttons" }, this._back, this._again, this._check, this._go),
+      element("div", { className: "tutorial-buttons" }, this._check, this._go),
     );
   }
 
@@ -91,6 +91,7 @@ export class Tutorial {
   _praise(message) {
     const last = this._index === this._steps.length - 1;
     setText(this._verdict, `✓ ${message}`);
+    setText(this._hint, "");
     this.element.dataset.ok = "true";
     this._check.hidden = true;
     this._go.hidden = false;
@@ -104,7 +105,6 @@ export class Tutorial {
   _close() {
     setText(this._title, gettext("That is all you need. What is looked at in your work:"));
     setText(this._text, "");
-    setText(this._hint, "");
     this._matters.hidden = false;
   }
 
