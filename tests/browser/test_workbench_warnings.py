@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
 import uuid
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -148,3 +150,20 @@ def signs(opened: Bench) -> int:
                }).length"""
         )
     )
+
+
+def test_a_number_that_changes_in_published_data_is_found_and_nothing_else(
+    module_page: Page, shared_data: Path
+) -> None:
+    """MultiviewX, five frames of 20 people: number 0 ends 1.2 m inside, number 22 begins 0.3 m beside."""
+    files = sorted((shared_data / "multiviewx" / "annotations_positions").glob("*.json"))
+    columns, step = 1000, 0.025
+    frames = [
+        {
+            one["personID"]: (one["positionID"] % columns * step, one["positionID"] // columns * step)
+            for one in json.loads(file.read_text())
+        }
+        for file in files
+    ]
+    centred = [{person: (x - 12.5, y - 8.0) for person, (x, y) in frame.items()} for frame in frames]
+    assert found(module_page, centred, border=12.5) == [["renumbered", 10, [0, 22]]]
