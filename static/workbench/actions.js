@@ -4,6 +4,7 @@ import { Dragging } from "./dragging.js";
 import { Ghost } from "./ghost.js";
 import { Guard } from "./guard.js";
 import { showHelp } from "./help.js";
+import { keyFor } from "./keys.js";
 import { gettext } from "./messages.js";
 import { Moving } from "./moving.js";
 import { showSettings } from "./settings_dialog.js";
@@ -59,7 +60,7 @@ export class Actions {
       outline: () => this.settings.set("outline", !this.settings.get("outline")),
       grid: () => this.settings.set("grid", !this.settings.get("grid")),
       directions: () => this.settings.set("directions", !this.settings.get("directions")),
-      help: () => showHelp(),
+      help: () => showHelp(this.settings),
       settings: () => showSettings(this.settings),
       controls: () => this.setControls(true),
       escape: () => this.escape(),
@@ -143,7 +144,7 @@ export class Actions {
     const person = this.guard.selected();
     if (!person) return false;
     this.history.run(commands.remove(this.store, person.person));
-    this.notices.say(gettext("Person {person} removed – Ctrl + Z brings it back", { person: person.person }));
+    this.notices.say(gettext("Person {person} removed – {key} brings it back", { person: person.person, key: keyFor("undo") }));
     return true;
   }
 

@@ -1,3 +1,4 @@
+import { keyFor } from "./keys.js";
 import { gettext } from "./messages.js";
 
 /** Who may be edited, and why not: every refusal is said where the annotator looks. */
@@ -26,7 +27,7 @@ export class Guard {
   }
 
   sayNobodySelected(place = null) {
-    this.say(place, gettext("Nobody is selected: click on a box, or press Tab"));
+    this.say(place, gettext("Nobody is selected: click on a box, or press {key}", { key: keyFor("nextPerson") }));
   }
 
   say(place, text) {

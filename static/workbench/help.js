@@ -1,14 +1,11 @@
 import { ask } from "./dialogs.js";
 import { element } from "./dom.js";
-import { groupTitle, keyName, keyTable } from "./keys.js";
+import { KeySheet } from "./key_sheet.js";
 import { gettext } from "./messages.js";
 
-/** The key sheet, made from the key table. */
-export function showHelp() {
-  const groups = Map.groupBy(keyTable(), ({ group }) => group);
-  const sheet = [...groups].map(([group, rows]) =>
-    element("section", {}, element("h3", {}, groupTitle(group)), element("dl", {}, rows.flatMap(keyRow))),
-  );
+/** The key sheet, made from the key table; keys are changed in it. */
+export function showHelp(settings) {
+  const keys = new KeySheet(settings);
   const mouse = element(
     "section",
     {},
@@ -18,13 +15,9 @@ export function showHelp() {
   return ask({
     title: gettext("Keys and mouse"),
     wide: true,
-    body: [element("div", { className: "key-sheet" }, mouse, ...sheet)],
+    body: [keys.message, element("div", { className: "key-sheet" }, mouse, keys.element), keys.reset],
     buttons: [{ id: "close", label: gettext("Close"), main: true }],
   });
-}
-
-function keyRow({ keys, label }) {
-  return row(keys.map((key) => element("kbd", {}, keyName(key))), label);
 }
 
 function row(keys, label) {

@@ -11,10 +11,15 @@ export class Keyboard {
   constructor(perform, onMode) {
     this._perform = perform;
     this._onMode = onMode;
-    this._actions = new Map(keyTable().flatMap(({ id, keys }) => keys.map((key) => [key, id])));
+    this.learn();
     this.controls = false;
     this._listener = (event) => this._onKey(event);
     document.addEventListener("keydown", this._listener);
+  }
+
+  /** Keys have been changed. */
+  learn() {
+    this._actions = new Map(keyTable().flatMap(({ id, keys }) => keys.map((key) => [key, id])));
   }
 
   setControls(on) {

@@ -1,6 +1,6 @@
 /**
  * The one table of keys: the keyboard, the help sheet and the tooltips are made from it. `keys` are chords as
- * `chord()` writes them. `labels` are texts for translation.
+ * `chord()` writes them. `labels` are texts for translation. An annotator may have chosen other keys.
  */
 import { gettext } from "./messages.js";
 
@@ -76,9 +76,39 @@ const TABLE = [
   ["escape", "other", ["Escape"], () => gettext("leave zoom, then let go of the person")],
 ];
 
-/** @returns {{id, group, keys: string[], label: string}[]} in the order of the help sheet */
+/** Who counts on finding them: the way out, and digits that mean views. */
+const FIXED = ["toggleView", "controls", "escape"];
+
+let chosen = {};
+
+/** @param {Record<string, string[]>} keys chords by id; whatever is not in it has the keys of the table */
+export function useKeys(keys) {
+  const reserved = TABLE.filter(([id]) => FIXED.includes(id)).flatMap(([, , own]) => own);
+  const fits = ([id, own]) => !FIXED.includes(id) && Array.isArray(own) && own.length && own.every((key) => typeof key === "string" && !reserved.includes(key));
+  chosen = Object.fromEntries(Object.entries(keys).filter(fits));
+}
+
+/** @returns {{id, group, keys: string[], label: string, fixed: boolean}[]} in the order of the help sheet */
 export function keyTable() {
-  return TABLE.map(([id, group, keys, label]) => ({ id, group, keys, label: label() }));
+  const taken = new Set(Object.values(chosen).flat());
+  return TABLE.map(([id, group, keys, label]) => ({
+    id,
+    group,
+    keys: chosen[id] ?? keys.filter((key) => !taken.has(key)),
+    label: label(),
+    fixed: FIXED.includes(id),
+  }));
+}
+
+/** Who has that key already, other than `id`: a row of the table, or null. */
+export function clash(id, key) {
+  return keyTable().find((row) => row.id !== id && row.keys.includes(key)) ?? null;
+}
+
+/** What to press for `id`, as it is printed on keys. */
+export function keyFor(id) {
+  const [key] = keyTable().find((row) => row.id === id).keys;
+  return key ? keyName(key) : gettext("no key");
 }
 
 export function groupTitle(group) {

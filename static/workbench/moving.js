@@ -3,6 +3,7 @@ import { freePosition } from "./carry.js";
 import * as commands from "./commands.js";
 import { arrowSteps } from "./directions.js";
 import { Held } from "./held.js";
+import { keyFor } from "./keys.js";
 import { gettext } from "./messages.js";
 import { spotOn } from "./spot.js";
 
@@ -97,7 +98,7 @@ export class Moving {
     const ground = pane.view.ground(pane.transform.toSource(at.x, at.y));
     const { position, problem } = spotOn(this.scene, this.store, ground);
     if (problem === "horizon") this.guard.say(event, gettext("Above the horizon there is no ground: click where the feet are"));
-    if (problem === "outside") this.guard.say(event, gettext("Outside the ground area – T shows its border"));
+    if (problem === "outside") this.guard.say(event, gettext("Outside the ground area – {key} shows its border", { key: keyFor("outline") }));
     return position;
   }
 }

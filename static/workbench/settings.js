@@ -53,6 +53,7 @@ const TABLE = {
   outline: { value: false, group: "seeing", label: () => gettext("Show the border of the ground area") },
   grid: { value: false, group: "seeing", label: () => gettext("Show a grid of metres on the ground") },
   directions: { value: false, group: "seeing", label: () => gettext("Show where the arrow keys lead") },
+  keys: { value: {} },
   hiddenViews: { value: [] },
   largeView: { value: "" },
   tones: { value: {} },

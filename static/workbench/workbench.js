@@ -7,7 +7,9 @@ import { Filmstrip } from "./filmstrip.js";
 import { finishAssignment } from "./finish.js";
 import { FrameHistory } from "./frame_history.js";
 import { IdentityActions } from "./identity_actions.js";
+import { nameKeys } from "./key_sheet.js";
 import { Keyboard } from "./keyboard.js";
+import { useKeys } from "./keys.js";
 import { Layout } from "./layout.js";
 import { gettext } from "./messages.js";
 import { Notices } from "./notices.js";
@@ -64,7 +66,7 @@ export function buildWorkbench(root, session, { mode, home }) {
   const timeline = new Timeline({ ...session, walk, playback, perform });
   root.replaceChildren(bar.element, stage, filmstrip.element, timeline.element, notices.element);
   new Pointer(panes, actions);
-  connectKeyboard(actions, bar, perform);
+  connectKeyboard(actions, bar, perform, settings);
   const layout = new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
   chooseViews(root, actions, { panes, layout, settings, notices });
   if (mode === "tutorial") startTutorial(panel, { ...session, panes, walk, home });
@@ -85,8 +87,13 @@ function startTutorial(panel, parts) {
 }
 
 /** F6 gives Tab, Space and Enter to the buttons; Escape takes them back. */
-function connectKeyboard(actions, bar, perform) {
+function connectKeyboard(actions, bar, perform, settings) {
   const keyboard = new Keyboard(perform, (controls) => bar.showMode(controls));
+  settings.watch("keys", (keys) => {
+    useKeys(keys);
+    keyboard.learn();
+    nameKeys(document);
+  });
   actions.setControls = (on) => {
     keyboard.setControls(on);
     if (on) bar.element.querySelector("a, button").focus();
