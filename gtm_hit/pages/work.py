@@ -15,6 +15,7 @@ from django.views.decorators.http import require_http_methods, require_POST, req
 from gtm_hit.models import Layer, Worker
 from gtm_hit.ops import assignments, tokens, tutorial, workers
 from gtm_hit.pages.access import staff_only
+from gtm_hit.pages.catalog import workbench_catalog
 
 # The names under which platforms put their worker's id into the address.
 ID_PARAMETERS = ["worker_id", "workerId", "PROLIFIC_PID", "participant_id"]
@@ -137,7 +138,7 @@ def layer(request: HttpRequest, slug: str, name: str) -> HttpResponse:
 
 
 def workbench(request: HttpRequest, **context: str) -> HttpResponse:
-    return render(request, "workbench.html", context)
+    return render(request, "workbench.html", {**context, "catalog": workbench_catalog(request)})
 
 
 urlpatterns = [

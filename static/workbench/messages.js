@@ -1,15 +1,16 @@
 /**
  * Every text an annotator reads goes through these two functions. They are named as gettext names them,
- * so that `makemessages -d djangojs` finds the texts. A page in another language carries its catalogue as
- * JSON: {"catalog": {text: translation | [singular, plural, …]}, "plural": "n != 1"}.
+ * so that `makemessages -d djangojs` finds the texts. The page carries its language's catalogue as JSON:
+ * {"catalog": {text: translation | [form, form, …]}, "plurals": "1011…"}, the latter the form for 0, 1, 2 … 199.
  */
 let catalog = {};
 let pluralIndex = (n) => (n === 1 ? 0 : 1);
 
-/** @param {{catalog?: object, pluralIndex?: (n: number) => number}} languages */
-export function useCatalog(languages) {
-  catalog = languages.catalog ?? {};
-  pluralIndex = languages.pluralIndex ?? pluralIndex;
+/** @param {{catalog: object, plurals: string}} language */
+export function useCatalog(language) {
+  catalog = language.catalog;
+  const period = language.plurals.length / 2; // larger numbers have the form of the last ones with the same ending
+  pluralIndex = (n) => Number(language.plurals[n < 2 * period ? n : period + (n % period)]);
 }
 
 /** `gettext("Frame {number}", {number: 5})` */
