@@ -127,6 +127,11 @@ SPECTACULAR_SETTINGS = {
     "SWAGGER_UI_DIST": "SIDECAR",
     "SWAGGER_UI_FAVICON_HREF": "SIDECAR",
     "SERVE_PERMISSIONS": ["rest_framework.permissions.IsAdminUser"],
+    "ENUM_NAME_OVERRIDES": {
+        "AnnotationState": "gtm_hit.models.annotation.Annotation.State",
+        "AssignmentState": "gtm_hit.models.work.Assignment.State",
+        "JobState": "gtm_hit.models.job.Job.State",
+    },
 }
 
 # Behind TLS (SECURE=true) cookies and redirects insist on it.

@@ -6,7 +6,7 @@ from django.urls import URLPattern, URLResolver, include, path, re_path
 from drf_spectacular.views import SpectacularAPIView, SpectacularSwaggerView
 
 # Importing it tells drf-spectacular about the tokens.
-from gtm_hit.api import frames, schema, tutorial  # noqa: F401
+from gtm_hit.api import datasets, frames, imports, jobs, releases, schema, tutorial, work  # noqa: F401
 from gtm_hit.api.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.images import ImageView
 from gtm_hit.api.missing import MissingView
@@ -36,8 +36,42 @@ learning = [
     path("check/", tutorial.TutorialCheck.as_view()),
     path("done/", tutorial.TutorialDone.as_view()),
 ]
+one_layer = [
+    path("", datasets.OneLayer.as_view()),
+    path("annotations/", datasets.Annotations.as_view()),
+    path("statistics/", datasets.Statistics.as_view()),
+    path("exports/", releases.Exports.as_view()),
+]
+one_dataset = [
+    path("", datasets.OneDataset.as_view()),
+    path("cameras/", datasets.Cameras.as_view()),
+    path("frames/", datasets.Frames.as_view()),
+    path("layers/", datasets.Layers.as_view()),
+    path("layers/<str:name>/", include(one_layer)),
+    path("evaluation/", datasets.Evaluation.as_view()),
+    path("annotation-imports/", imports.AnnotationImports.as_view()),
+    path("batches/", work.Batches.as_view()),
+    path("progress/", work.Progress.as_view()),
+    path("assignments/", work.Assignments.as_view()),
+    path("releases/", releases.Releases.as_view()),
+    path("releases/<int:number>/", releases.OneRelease.as_view()),
+    path("releases/<int:number>/download/", releases.DownloadRelease.as_view()),
+]
+scripts = [
+    path("datasets/", datasets.Datasets.as_view()),
+    path("datasets/<slug:slug>/", include(one_dataset)),
+    path("sources/", imports.Sources.as_view()),
+    path("uploads/", imports.Uploads.as_view()),
+    path("imports/", imports.Imports.as_view()),
+    path("jobs/", jobs.Jobs.as_view()),
+    path("jobs/<int:pk>/", jobs.OneJob.as_view()),
+    path("jobs/<int:pk>/cancel/", jobs.CancelJob.as_view()),
+    path("jobs/<int:pk>/retry/", jobs.RetryJob.as_view()),
+    path("jobs/<int:pk>/download/", jobs.DownloadJob.as_view()),
+]
 
 urlpatterns: list[URLPattern | URLResolver] = [
+    *scripts,
     path("assignment/", include(assignment)),
     path("layers/<int:layer>/", include(layer)),
     path("tutorial/", include(learning)),

@@ -176,9 +176,14 @@ def remove_dead_partials() -> None:
             shutil.rmtree(path, ignore_errors=True)
 
 
+def made_files(job: Job) -> bool:
+    """Whether there is something to download, as far as the row knows."""
+    return job.state == Job.State.DONE and "folder" in job.result
+
+
 def finished(job: Job) -> Export | None:
     """The files of an export job that is done, or None when they are not (or no longer) there."""
-    if job.state != Job.State.DONE or "folder" not in job.result:
+    if not made_files(job):
         return None
     folder = settings.EXPORTS_ROOT / job.result["folder"]
     archive = archive_of(folder)

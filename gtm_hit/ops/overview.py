@@ -139,6 +139,23 @@ def with_assignments(batches: Iterable[Batch]) -> list[BatchRow]:
     return rows
 
 
+def assignments(dataset: Dataset) -> QuerySet[Assignment]:
+    """Assignments with `frame_count`, `frames_done` and `people`, the newest first."""
+    frames = Batch.frames.through.objects.filter(batch=OuterRef("batch"))
+    done = LayerFrame.objects.filter(layer=OuterRef("layer"), done=True)
+    annotations = Annotation.objects.filter(layer=OuterRef("layer"))
+    return (
+        Assignment.objects.filter(batch__dataset=dataset)
+        .select_related("batch", "worker", "layer")
+        .annotate(
+            frame_count=_count(frames, "batch", "pk"),
+            frames_done=_count(done, "layer", "pk"),
+            people=_count(annotations, "layer", "person", distinct=True),
+        )
+        .order_by("-leased_at", "-pk")
+    )
+
+
 def jobs() -> QuerySet[Job]:
     return Job.objects.select_related("dataset", "created_by")
 

@@ -20,7 +20,7 @@ def ada(client: Client) -> Client:
 
 def test_the_key_is_shown_once(ada: Client) -> None:
     page = ada.post("/tokens/", {"name": "nightly", "scopes": ["read"], "days": "30"}).content.decode()
-    key = re.search(r"value="(gtm_[\w-]+)" data-copy-source", page)
+    key = re.search(r'value="(gtm_[\w-]+)" data-copy-source', page)
     assert key and api_tokens.find(key[1]).name == "nightly"
     page = ada.get("/tokens/").content.decode()
     assert "nightly" in page and key[1] not in page

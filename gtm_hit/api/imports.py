@@ -1,0 +1,206 @@
+"""Datasets and annotations in: from what lies on the server, or an archive sent here before."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiExample, extend_schema
+from rest_framework import exceptions, serializers
+from rest_framework.parsers import MultiPartParser
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from gtm_hit.api import shapes
+from gtm_hit.api.frames import valid
+from gtm_hit.api.jobs import started
+from gtm_hit.api.parsing import TooLarge
+from gtm_hit.api.serializers import LARGEST, StrictBooleanField
+from gtm_hit.api.staff import READS, WRITES, StaffView, answers, dataset_or_404, invalid
+from gtm_hit.formats.problems import FormatError, ProblemList
+from gtm_hit.geometry.cylinder import FootRule
+from gtm_hit.models import ApiToken, Dataset
+from gtm_hit.models.dataset import name_validator
+from gtm_hit.ops import import_jobs, uploads
+from gtm_hit.ops.annotation_import import job as annotation_import
+from gtm_hit.ops.annotation_import.findings import Kind
+from gtm_hit.ops.annotation_import.reading import READERS
+from gtm_hit.ops.importing.calibrations import UNITS
+from gtm_hit.ops.importing.options import PRESETS, ImportOptions, scene
+
+FORM_BYTES = 1_000_000  # around the archive, generously
+WHOLE = {"min_value": 1, "max_value": LARGEST, "required": False}
+
+
+class FiniteField(serializers.FloatField):
+    """What JSON can hold again when the job is written down."""
+
+    def to_internal_value(self, data: Any) -> float:
+        try:
+            value = super().to_internal_value(data)
+        except OverflowError:
+            value = math.inf
+        if not math.isfinite(value):
+            self.fail("invalid")
+        return value
+
+
+class SceneValuesSerializer(serializers.Serializer[Any]):
+    """What no file states; the dataset, the preset or a default give what is left out."""
+
+    columns = serializers.IntegerField(**WHOLE)
+    rows = serializers.IntegerField(**WHOLE)
+    step = FiniteField(required=False, help_text="metres")
+    origin_x = FiniteField(required=False, help_text="metres")
+    origin_y = FiniteField(required=False, help_text="metres")
+    cylinder_radius = FiniteField(required=False, help_text="metres")
+    cylinder_height = FiniteField(required=False, help_text="metres")
+    foot_rule = serializers.ChoiceField(choices=[rule.value for rule in FootRule], required=False)
+    frame_rate = FiniteField(required=False, help_text="frame numbers per second")
+    frame_step = serializers.IntegerField(**WHOLE)
+
+
+class ImportSerializer(serializers.Serializer[Any]):
+    source = serializers.CharField(max_length=300, help_text="a key from /sources/ or /uploads/")
+    slug = serializers.SlugField(max_length=80, help_text="an existing dataset gets the frames it lacks")
+    name = serializers.CharField(max_length=200, default="", allow_blank=True)
+    preset = serializers.ChoiceField(choices=sorted(PRESETS), allow_null=True, default=None)
+    tvec_unit = serializers.ChoiceField(choices=list(UNITS), allow_null=True, default=None)
+    values = SceneValuesSerializer(default=dict)
+    layer = serializers.CharField(max_length=80, default="imported", validators=[name_validator])
+    hidden_layer = StrictBooleanField(default=False)
+    undistort = StrictBooleanField(default=False)
+    keep_all_frames = StrictBooleanField(default=False)
+
+
+class ImportAnnotationsSerializer(serializers.Serializer[Any]):
+    source = serializers.CharField(max_length=300, help_text="a key from /sources/ or /uploads/")
+    format = serializers.ChoiceField(choices=sorted(READERS))
+    layer = serializers.CharField(max_length=120, validators=[name_validator], help_text="of the new layer")
+    drop = serializers.ListField(
+        child=serializers.ChoiceField(choices=[kind.value for kind in Kind]), default=list, max_length=10
+    )
+    hidden = StrictBooleanField(default=False, help_text="never shown to workers")
+
+
+class UploadSerializer(serializers.Serializer[Any]):
+    file = serializers.FileField(help_text="a zip of a dataset, or annotations as one file or a zip")
+
+
+def source_named(key: str) -> uploads.Source:
+    found = uploads.source(key)
+    if found is None:
+        raise invalid("source", _("There is no such source; see /api/v1/sources/."))
+    return found
+
+
+def refused(place: str, error: FormatError) -> exceptions.ValidationError:
+    return exceptions.ValidationError({place: [str(problem) for problem in error.problems]})
+
+
+class Sources(StaffView):
+    @extend_schema(
+        operation_id="sources",
+        summary="Folders and archives imports can be started from",
+        responses=answers(200, shapes.SourcesSerializer, READS),
+    )
+    def get(self, request: Request) -> Response:
+        return Response(shapes.SourcesSerializer({"results": uploads.sources()}).data)
+
+
+class BoundedMultiPartParser(MultiPartParser):
+    """Looks at the length before it takes the body in."""
+
+    def parse(self, stream: Any, media_type: Any = None, parser_context: Any = None) -> Any:
+        length = int(parser_context["request"].META.get("CONTENT_LENGTH") or 0)
+        if length > uploads.most_bytes() + FORM_BYTES:
+            size = uploads.most_bytes() // uploads.MEGABYTE
+            raise TooLarge(_("The file is larger than %(size)d MB.") % {"size": size})
+        return super().parse(stream, media_type, parser_context)
+
+
+class Uploads(StaffView):
+    parser_classes = [BoundedMultiPartParser]  # type: ignore[assignment]
+    write_scope = ApiToken.Scope.IMPORT
+
+    @extend_schema(
+        operation_id="upload",
+        summary="Send an archive to import from",
+        description="Kept until it is imported, for a week at most. Nothing is imported yet.",
+        request={"multipart/form-data": UploadSerializer},
+        responses=answers(201, shapes.SourceSerializer, WRITES),
+    )
+    def post(self, request: Request) -> Response:
+        file = valid(UploadSerializer(data=request.data))["file"]
+        try:
+            kept = annotation_import.keep(file)
+        except FormatError as error:
+            raise refused("file", error) from error
+        return Response(shapes.SourceSerializer(kept).data, status=201)
+
+
+class Imports(StaffView):
+    write_scope = ApiToken.Scope.IMPORT
+
+    @extend_schema(
+        operation_id="start_import",
+        summary="Import a dataset, or frames it does not have yet",
+        description="Answers with the job. A job's `message` lists everything that is not right.",
+        request=ImportSerializer,
+        responses=answers(202, shapes.JobShape, WRITES),
+        examples=[
+            OpenApiExample(
+                "as published",
+                {"source": "incoming/MultiviewX", "slug": "multiviewx", "preset": "multiviewx"},
+                request_only=True,
+            )
+        ],
+    )
+    def post(self, request: Request) -> Response:
+        options = valid(ImportSerializer(data=request.data))
+        source = source_named(options.pop("source"))
+        options["values"] = dict(options["values"])
+        problems = ProblemList("")
+        try:
+            scene(ImportOptions(folder=Path(), **options), existing(options["slug"]), problems)
+            problems.raise_if_any()
+        except FormatError as error:
+            reasons = [problem.reason for problem in error.problems]
+            raise exceptions.ValidationError({"values": reasons}) from error
+        return started(import_jobs.start_import(source, options, request.user))
+
+
+class AnnotationImports(StaffView):
+    write_scope = ApiToken.Scope.IMPORT
+
+    @extend_schema(
+        operation_id="import_annotations",
+        summary="Import annotations of another program as a new layer",
+        request=ImportAnnotationsSerializer,
+        responses=answers(202, shapes.JobShape, WRITES),
+        examples=[
+            OpenApiExample(
+                "a detector's",
+                {"source": "uploads/found-1a2b3c4d.zip", "format": "csv", "layer": "detector"},
+                request_only=True,
+            )
+        ],
+    )
+    def post(self, request: Request, slug: str) -> Response:
+        dataset = dataset_or_404(slug)
+        wanted = valid(ImportAnnotationsSerializer(data=request.data))
+        source = source_named(wanted["source"])
+        drop = [Kind(name) for name in wanted["drop"]]
+        try:
+            job = annotation_import.start(
+                dataset, source, wanted["format"], wanted["layer"], drop, wanted["hidden"], request.user
+            )
+        except annotation_import.AnnotationImportError as error:
+            raise invalid("layer", error) from error
+        return started(job)
+
+
+def existing(slug: str) -> Dataset | None:
+    return Dataset.objects.filter(slug=slug).first()

@@ -1,0 +1,120 @@
+"""Long work: how far it is, stopping it, doing it again, and the files it made."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django.db.models import QuerySet
+from django.http import FileResponse, Http404
+from django.utils.translation import gettext as _
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import extend_schema
+from rest_framework.generics import ListAPIView
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from gtm_hit.api import shapes
+from gtm_hit.api.frames import refusal
+from gtm_hit.api.staff import ASKS, READS, Conflict, Pages, StaffView, answers, asked
+from gtm_hit.models import ApiToken, Job
+from gtm_hit.ops import exporting, overview
+from gtm_hit.ops import jobs as job_ops
+
+# Who may start such a job may stop it and start it again.
+SCOPES = {
+    Job.Kind.EXPORT_LAYER: ApiToken.Scope.RELEASE,
+    Job.Kind.MAKE_RELEASE: ApiToken.Scope.RELEASE,
+}
+
+
+def job_or_404(pk: int) -> Job:
+    found = overview.jobs().filter(pk=pk).first()
+    if found is None:
+        raise Http404
+    return found
+
+
+def started(job: Job) -> Response:
+    """The answer to whoever asked for long work."""
+    return Response(shapes.JobShape(job_or_404(job.pk)).data, status=202)
+
+
+class Jobs(StaffView, ListAPIView[Job]):
+    queryset = Job.objects.none()
+    serializer_class = shapes.JobShape
+    pagination_class = Pages
+
+    def get_queryset(self) -> QuerySet[Job]:
+        wanted = asked(self.request, shapes.JobsQuery)
+        if "dataset" in wanted:
+            wanted["dataset__slug"] = wanted.pop("dataset")
+        return overview.jobs().filter(**wanted).order_by("-created_at", "-pk")
+
+    @extend_schema(
+        operation_id="jobs",
+        summary="Jobs, the newest first",
+        parameters=[shapes.JobsQuery],
+        responses=answers(200, shapes.JobShape(many=True), ASKS),
+    )
+    def get(self, request: Request, *args: Any, **kwargs: Any) -> Response:
+        return super().get(request, *args, **kwargs)
+
+
+class OneJob(StaffView):
+    @extend_schema(operation_id="job", summary="A job", responses=answers(200, shapes.JobShape, READS))
+    def get(self, request: Request, pk: int) -> Response:
+        return Response(shapes.JobShape(job_or_404(pk)).data)
+
+
+class JobAction(StaffView):
+    @property
+    def write_scope(self) -> ApiToken.Scope:  # type: ignore[override]
+        kind = Job.objects.filter(pk=self.kwargs["pk"]).values_list("kind", flat=True).first()
+        return SCOPES.get(Job.Kind(kind), ApiToken.Scope.IMPORT) if kind else ApiToken.Scope.READ
+
+
+class CancelJob(JobAction):
+    @extend_schema(
+        operation_id="cancel_job",
+        summary="Stop a job",
+        description="A waiting job ends at once, a running one at its next step; a finished one stays.",
+        request=None,
+        responses=answers(200, shapes.JobShape, READS),
+    )
+    def post(self, request: Request, pk: int) -> Response:
+        job_ops.cancel(job_or_404(pk))
+        return Response(shapes.JobShape(job_or_404(pk)).data)
+
+
+class RetryJob(JobAction):
+    @extend_schema(
+        operation_id="retry_job",
+        summary="Do the same again, as a new job",
+        request=None,
+        responses=answers(202, shapes.JobShape, {**READS, 409: refusal("under_way")}),
+    )
+    def post(self, request: Request, pk: int) -> Response:
+        job = job_or_404(pk)
+        if not job.finished:
+            raise Conflict(_("This job is still under way."))
+        return started(job_ops.retry(job, request.user))
+
+
+class Download(StaffView):
+    """Archives are no JSON: a client that accepts zip only is right here."""
+
+    def perform_content_negotiation(self, request: Request, force: bool = False) -> Any:
+        return super().perform_content_negotiation(request, force=True)
+
+
+class DownloadJob(Download):
+    @extend_schema(
+        operation_id="download_job",
+        summary="The zip of a finished export",
+        responses={(200, "application/zip"): OpenApiTypes.BINARY, **READS},
+    )
+    def get(self, request: Request, pk: int) -> FileResponse:
+        export = exporting.finished(job_or_404(pk))
+        if export is None:
+            raise Http404
+        return FileResponse(export.archive.open("rb"), as_attachment=True, filename=export.archive_name)

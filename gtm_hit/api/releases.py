@@ -1,0 +1,138 @@
+"""Layers as files: exports, and releases with a number."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django.db.models import QuerySet
+from django.http import FileResponse, Http404
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import OpenApiExample, extend_schema
+from rest_framework import serializers
+from rest_framework.generics import ListAPIView
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from gtm_hit.api import shapes
+from gtm_hit.api.frames import valid
+from gtm_hit.api.jobs import Download, started
+from gtm_hit.api.staff import (
+    READS,
+    WRITES,
+    Pages,
+    StaffView,
+    answers,
+    dataset_or_404,
+    invalid,
+    layer_named,
+    layer_or_404,
+)
+from gtm_hit.models import ApiToken, Release
+from gtm_hit.ops import exporting, releases
+from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, FORMATS
+
+
+def formats_field(usual: tuple[str, ...]) -> serializers.ListField:
+    return serializers.ListField(
+        child=serializers.ChoiceField(choices=list(FORMATS)), min_length=1, max_length=20, default=list(usual)
+    )
+
+
+class ExportSerializer(serializers.Serializer[Any]):
+    formats = formats_field(DEFAULT_FORMATS)
+
+
+class MakeReleaseSerializer(serializers.Serializer[Any]):
+    layer = serializers.CharField(max_length=120, help_text="name of a layer")
+    licence = serializers.CharField(max_length=releases.MOST_LICENCE, help_text="the whole text")
+    title = serializers.CharField(max_length=200, default="", allow_blank=True)
+    formats = formats_field(releases.FORMATS)
+
+
+class Exports(StaffView):
+    write_scope = ApiToken.Scope.RELEASE
+
+    @extend_schema(
+        operation_id="start_export",
+        summary="Export a layer",
+        description="Answers with the job; when it is done, its `download` is the zip's address.",
+        request=ExportSerializer,
+        responses=answers(202, shapes.JobShape, WRITES),
+        examples=[OpenApiExample("two formats", {"formats": ["wildtrack", "coco"]}, request_only=True)],
+    )
+    def post(self, request: Request, slug: str, name: str) -> Response:
+        layer = layer_or_404(slug, name)
+        wanted = valid(ExportSerializer(data=request.data))
+        return started(exporting.start(layer, request.user, wanted["formats"]))
+
+
+class Releases(StaffView, ListAPIView[Release]):
+    queryset = Release.objects.none()
+    serializer_class = shapes.ReleaseShape
+    pagination_class = Pages
+    write_scope = ApiToken.Scope.RELEASE
+
+    def get_queryset(self) -> QuerySet[Release]:
+        return releases.releases(dataset_or_404(self.kwargs["slug"]))
+
+    @extend_schema(
+        operation_id="releases",
+        summary="Releases of a dataset, the newest first",
+        responses=answers(200, shapes.ReleaseShape(many=True), READS),
+    )
+    def get(self, request: Request, *args: Any, **kwargs: Any) -> Response:
+        return super().get(request, *args, **kwargs)
+
+    @extend_schema(
+        operation_id="make_release",
+        summary="Release a layer under the next number",
+        description="Answers with the job; its `result.release` is the number when it is done.",
+        request=MakeReleaseSerializer,
+        responses=answers(202, shapes.JobShape, WRITES),
+        examples=[
+            OpenApiExample(
+                "the truth", {"layer": "truth", "licence": "CC BY 4.0", "title": "First"}, request_only=True
+            )
+        ],
+    )
+    def post(self, request: Request, slug: str) -> Response:
+        dataset = dataset_or_404(slug)
+        wanted = valid(MakeReleaseSerializer(data=request.data))
+        layer = layer_named(dataset, wanted["layer"], "layer")
+        order = releases.Order(
+            layer, wanted["licence"], wanted["title"], tuple(wanted["formats"]), request.user
+        )
+        try:
+            return started(releases.start(order))
+        except releases.ReleaseError as error:
+            raise invalid("", error) from error
+
+
+class OneRelease(StaffView):
+    @extend_schema(
+        operation_id="release",
+        summary="A release",
+        responses=answers(200, shapes.ReleaseShape, READS),
+    )
+    def get(self, request: Request, slug: str, number: int) -> Response:
+        return Response(shapes.ReleaseShape(release_or_404(slug, number)).data)
+
+
+class DownloadRelease(Download):
+    @extend_schema(
+        operation_id="download_release",
+        summary="A release's zip",
+        responses={(200, "application/zip"): OpenApiTypes.BINARY, **READS},
+    )
+    def get(self, request: Request, slug: str, number: int) -> FileResponse:
+        archive = releases.archive_of(release_or_404(slug, number))
+        if not archive.is_file():
+            raise Http404
+        return FileResponse(archive.open("rb"), as_attachment=True, filename=archive.name)
+
+
+def release_or_404(slug: str, number: int) -> Release:
+    found = releases.releases(dataset_or_404(slug)).filter(number=number).first()
+    if found is None:
+        raise Http404
+    return found

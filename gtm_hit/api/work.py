@@ -1,0 +1,98 @@
+"""Batches, who has them, and how far they are."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from django.db.models import QuerySet
+from drf_spectacular.utils import OpenApiExample, extend_schema
+from rest_framework import serializers
+from rest_framework.generics import ListAPIView
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from gtm_hit.api import shapes
+from gtm_hit.api.frames import valid
+from gtm_hit.api.staff import ASKS, READS, WRITES, Pages, StaffView, answers, asked, dataset_or_404, invalid
+from gtm_hit.models import ApiToken, Assignment, Batch
+from gtm_hit.ops import batches, overview
+
+
+class MakeBatchesSerializer(serializers.Serializer[Any]):
+    size = serializers.IntegerField(min_value=1, max_value=batches.MAX_SIZE, default=10, help_text="frames")
+    copies = serializers.IntegerField(
+        min_value=1, max_value=batches.MAX_COPIES, default=1, help_text="independent annotations of a batch"
+    )
+
+
+class BatchesMadeSerializer(serializers.Serializer[Any]):
+    made = serializers.IntegerField(help_text="batches added by this request")
+
+
+class Batches(StaffView, ListAPIView[Batch]):
+    queryset = Batch.objects.none()
+    serializer_class = shapes.BatchShape
+    pagination_class = Pages
+    write_scope = ApiToken.Scope.WORK
+
+    def get_queryset(self) -> QuerySet[Batch]:
+        wanted = asked(self.request, shapes.BatchesQuery)
+        return overview.batches(dataset_or_404(self.kwargs["slug"])).filter(**wanted)
+
+    @extend_schema(
+        operation_id="batches",
+        summary="Batches of a dataset",
+        parameters=[shapes.BatchesQuery],
+        responses=answers(200, shapes.BatchShape(many=True), ASKS),
+    )
+    def get(self, request: Request, *args: Any, **kwargs: Any) -> Response:
+        return super().get(request, *args, **kwargs)
+
+    @extend_schema(
+        operation_id="make_batches",
+        summary="Batch the frames that are in no batch yet",
+        description="The same again makes nothing: existing batches stay as they are.",
+        request=MakeBatchesSerializer,
+        responses=answers(200, BatchesMadeSerializer, WRITES),
+        examples=[OpenApiExample("ten frames, done twice", {"size": 10, "copies": 2}, request_only=True)],
+    )
+    def post(self, request: Request, slug: str) -> Response:
+        dataset = dataset_or_404(slug)
+        wanted = valid(MakeBatchesSerializer(data=request.data))
+        try:
+            return Response({"made": batches.make_batches(dataset, **wanted)})
+        except batches.BatchError as error:
+            raise invalid("", error) from error
+
+
+class Progress(StaffView):
+    @extend_schema(
+        operation_id="progress",
+        summary="How many batches are free, leased, submitted, accepted",
+        responses=answers(200, shapes.ProgressSerializer, READS),
+    )
+    def get(self, request: Request, slug: str) -> Response:
+        return Response(asdict(overview.batch_counts(dataset_or_404(slug))))
+
+
+class Assignments(StaffView, ListAPIView[Assignment]):
+    queryset = Assignment.objects.none()
+    serializer_class = shapes.AssignmentShape
+    pagination_class = Pages
+
+    def get_queryset(self) -> QuerySet[Assignment]:
+        wanted = asked(self.request, shapes.AssignmentsQuery)
+        names = {"state": "state", "worker": "worker__pseudonym", "batch": "batch__number"}
+        narrowed = {names[name]: value for name, value in wanted.items()}
+        return overview.assignments(dataset_or_404(self.kwargs["slug"])).filter(**narrowed)
+
+    @extend_schema(
+        operation_id="assignments",
+        summary="Who has which batch, and how far",
+        description="Workers appear by their pseudonyms.",
+        parameters=[shapes.AssignmentsQuery],
+        responses=answers(200, shapes.AssignmentShape(many=True), ASKS),
+    )
+    def get(self, request: Request, *args: Any, **kwargs: Any) -> Response:
+        return super().get(request, *args, **kwargs)
