@@ -16,8 +16,9 @@ const MISSING = LOOKS.ghost; // where a person would be looked for
  * there. One canvas; a crop is painted again only when its picture or its box changed.
  */
 export class Filmstrip {
-  constructor({ scene, store, images, walk, panes, settings }) {
-    Object.assign(this, { scene, store, images, walk, panes, settings });
+  constructor({ scene, store, loader, images, walk, panes, settings }) {
+    Object.assign(this, { scene, store, loader, images, walk, panes, settings });
+    this._fetching = null;
     this._painted = new Map(); // cell → what it shows
     this._canvas = element("canvas", {});
     this._buttons = element("div", { className: "filmstrip-frames" });
@@ -83,10 +84,20 @@ export class Filmstrip {
 
   /** The person in a frame, or where one would look for him. */
   _step(person, number) {
+    if (!this.store.frame(number).loaded) {
+      this._fetch(number);
+      return { number, here: false, one: null };
+    }
     const here = this.store.person(person, number);
     if (here) return { number, here: true, one: here };
     const middle = between(this.store, this.scene, person, number);
     return { number, here: false, one: middle ?? this._expected(person, number) };
+  }
+
+  /** A piece of a long layer at a time; when the network is away, the next repaint asks again. */
+  _fetch(number) {
+    const done = () => (this._fetching = null);
+    this._fetching ??= this.loader.load(number, false).then(done, done);
   }
 
   _expected(person, number) {

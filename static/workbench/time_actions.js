@@ -3,6 +3,7 @@ import { freePosition, predictPeople } from "./carry.js";
 import * as commands from "./commands.js";
 import { ask } from "./dialogs.js";
 import { chooseFill } from "./fill_dialog.js";
+import { loadMissing } from "./load_missing.js";
 import { gettext, ngettext } from "./messages.js";
 import { sourcesOn, withFreeNumbers } from "./sources.js";
 import { nextTask } from "./todo.js";
@@ -11,8 +12,8 @@ const PATHS = ["none", "selected", "all"];
 
 /** What an annotator does across frames: carry, copy, fill, look through, find what is left. */
 export class TimeActions {
-  constructor({ scene, store, history, saver, loader, settings, panes, notices, walk, playback }) {
-    Object.assign(this, { scene, store, history, saver, loader, settings, panes, notices, walk, playback });
+  constructor({ scene, store, history, loader, settings, panes, notices, guard, walk, playback }) {
+    Object.assign(this, { scene, store, history, loader, settings, panes, notices, guard, walk, playback });
     this._asked = new Set(); // people in one frame only, shown once
   }
 
@@ -36,9 +37,9 @@ export class TimeActions {
 
   /** Everybody of the frame beside this one who is missing here, moved on the way he walked. */
   async bring(direction) {
-    if (this._refused()) return;
+    if (this.guard.refused()) return;
     const sources = await this._sources(direction);
-    if (!sources.length) return this._sayNobody(direction);
+    if (!sources?.length) return sources && this._sayNobody(direction);
     const { store, scene } = this;
     const missing = predictPeople(scene.grid, scene.seconds(store.current), sources, { except: store.people(), origin: "copied" });
     if (!missing.length) return this.notices.say(gettext("Everybody of that frame is here already"));
@@ -48,19 +49,21 @@ export class TimeActions {
 
   /** One person exactly where he stands in the frame beside this one: the selected one, or whom one chooses. */
   async copy(direction) {
-    if (this._refused()) return;
-    const [source] = await this._sources(direction);
-    if (!source) return this._sayNobody(direction);
+    if (this.guard.refused()) return;
+    const sources = await this._sources(direction);
+    if (!sources?.length) return sources && this._sayNobody(direction);
+    const [source] = sources;
     const person = this._whomToCopy(source) ?? (await this._choose(source));
     if (person === null) return;
     if (person === "all") return this._copyAll(source);
     const after = this._copied(source, source.people.get(person));
-    this.history.run(commands.copy(this.store, source.outside ? withFreeNumbers(this.store, [after])[0] : after));
+    const stranger = source.outside && !this.store.person(person); // whose number may mean somebody else here
+    this.history.run(commands.copy(this.store, stranger ? withFreeNumbers(this.store, [after])[0] : after));
   }
 
   async fill() {
-    if (this._refused()) return;
-    await this._loadAll();
+    if (this.guard.refused()) return;
+    if (!(await loadMissing(this, this._between()))) return;
     const { store, scene, panes } = this;
     const edits = await chooseFill(store, scene, panes.options.mapColours, store.selection ?? this.walk.held);
     if (edits === null) return;
@@ -76,6 +79,7 @@ export class TimeActions {
   }
 
   async goToNextTask() {
+    if (!(await loadMissing(this, this.store.numbers))) return;
     const task = nextTask(this.store, this.walk.judging, this._asked);
     if (!task) return this.notices.say(gettext("Nothing is left to do here"));
     if (task.number !== this.store.current) await this.walk.jump(task.number);
@@ -93,9 +97,10 @@ export class TimeActions {
     this.notices.say({ none: gettext("Paths: none"), selected: gettext("Paths: of the selected person"), all: gettext("Paths: of everybody") }[next]);
   }
 
+  /** Null when they could not be loaded. */
   async _sources(direction) {
     const number = this.store.neighbour(direction);
-    if (number !== undefined) await this.loader.load(number, false);
+    if (number !== undefined && !(await loadMissing(this, [number]))) return null;
     return sourcesOn(this.store, this.scene, this.store.current, direction);
   }
 
@@ -143,11 +148,11 @@ export class TimeActions {
     return new Set(others.map(({ position }) => position));
   }
 
-  /** Of a long layer only a piece is there; between its ends nothing may be missing. */
-  async _loadAll() {
+  /** Of a long layer only pieces are there; between the first and the last one nothing may be missing. */
+  _between() {
     const { numbers } = this.store;
     const loaded = numbers.map((number) => this.store.frame(number).loaded);
-    for (let index = loaded.indexOf(true); index <= loaded.lastIndexOf(true); index += 1) await this.loader.load(numbers[index], false);
+    return numbers.slice(loaded.indexOf(true), loaded.lastIndexOf(true) + 1);
   }
 
   _placeOf(number) {
@@ -157,11 +162,5 @@ export class TimeActions {
 
   _sayNobody(direction) {
     this.notices.say(direction < 0 ? gettext("Nobody is marked before this frame") : gettext("Nobody is marked after this frame"));
-  }
-
-  _refused() {
-    if (this.saver.readOnly === null) return false;
-    this.notices.say(gettext("Read-only: {reason}", { reason: this.saver.readOnly }));
-    return true;
   }
 }

@@ -3,7 +3,8 @@ import { carriedOf } from "./annotation.js";
 
 /** Why a frame is not finished: "yellow", "empty", "open" (nobody said it is done), or null. */
 export function leftIn(store, number, judging) {
-  const { people, done, nobody } = store.frame(number);
+  const { people, done, nobody, loaded } = store.frame(number);
+  if (!loaded) return null;
   if (carriedOf(people).length) return "yellow";
   if (!people.size && !nobody) return "empty";
   return judging && !done ? "open" : null;
