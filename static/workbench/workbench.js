@@ -51,7 +51,7 @@ export function buildWorkbench(root, session, { mode, home }) {
   actions.use(identity.table());
   actions.use(new UndoActions({ ...session, notices, guard: actions.guard }).table());
   const playback = new Playback({ ...session, walk, settings });
-  actions.use(new TimeActions({ ...session, settings, panes, notices, walk, playback }).table());
+  actions.use(new TimeActions({ ...session, settings, panes, notices, guard: actions.guard, walk, playback }).table());
   actions.use(new Round({ store, panes, notices, walk, actions }).table());
   new Paths(panes, settings);
   const perform = (id, event) => {
