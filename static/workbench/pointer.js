@@ -1,3 +1,4 @@
+import { Fingers } from "./fingers.js";
 import { contains } from "./regions.js";
 
 const FOOT = 9; // CSS pixels around a foot point that mean the foot
@@ -15,6 +16,7 @@ export class Pointer {
     this._panes = panes;
     this._intents = intents;
     this._press = null;
+    this._fingers = new Fingers();
     this._lastPick = null;
     for (const pane of panes.all) this._attach(pane);
   }
@@ -52,7 +54,10 @@ export class Pointer {
     element.addEventListener("pointerdown", (event) => this._onDown(pane, event));
     element.addEventListener("pointermove", (event) => this._onMove(pane, event));
     element.addEventListener("pointerup", (event) => this._onUp(pane, event));
-    element.addEventListener("pointercancel", () => this._forget(pane));
+    element.addEventListener("pointercancel", (event) => {
+      this._fingers.up(event);
+      this._forget(pane);
+    });
     element.addEventListener("pointerleave", () => this._intents.leave());
     element.addEventListener("dblclick", (event) => event.target.closest("button") || this._intents.enlarge(pane, event));
     element.addEventListener("contextmenu", (event) => this._onMenu(pane, event));
@@ -63,11 +68,13 @@ export class Pointer {
     if (event.target.closest("button") || !pane.transform) return;
     this._panes.activate(pane);
     if (event.button === 2) return;
+    if (this._fingers.down(pane, event)) return this._forget(pane); // a second finger: nothing is clicked, the picture is pinched
     this._press = { pane, x: event.clientX, y: event.clientY, last: event, dragged: false, grip: this._gripOf(pane, event), holding: false };
     pane.element.setPointerCapture(event.pointerId);
   }
 
   _onMove(pane, event) {
+    if (this._fingers.move(pane, event)) return;
     const press = this._press;
     if (!press) return this._hover(pane, event);
     if (press.pane !== pane) return;
@@ -79,6 +86,7 @@ export class Pointer {
   }
 
   _onUp(pane, event) {
+    this._fingers.up(event);
     const press = this._press;
     this._press = null;
     pane.element.classList.remove("dragging");
