@@ -56,7 +56,7 @@ export class WarningsPanel {
     return element(
       "li",
       { "data-kind": warning.kind },
-      button(`${place}: ${words}`, { className: "quiet go", title: gettext("Go there") }, () => this._go(warning)),
+      button(gettext("Frame {place}: {words}", { place, words }), { className: "quiet go", title: gettext("Go there") }, () => this._go(warning)),
       warning.kind === "renumbered" ? button(gettext("Join…"), {}, () => this._join(warning)) : null,
       button("✕", { title: gettext("This is right: do not warn again"), "aria-label": gettext("Dismiss: {words}", { words }) }, () => this.warnings.dismiss(warning)),
     );

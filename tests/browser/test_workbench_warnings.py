@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,9 @@ pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 MIDDLE = (3.0, 9.0)
 
 
-def found(page: Page, frames: list[dict[int, tuple[float, float]]], border: float = 10.0) -> list[list[Any]]:
+def found(
+    page: Page, frames: Sequence[Mapping[int, tuple[float, float]]], border: float = 10.0
+) -> list[list[Any]]:
     """Kind, frame and persons of the warnings for people at places (metres), half a second between frames."""
     return run(
         page,
@@ -71,7 +73,7 @@ def test_people_in_one_place_are_listed_and_the_warning_goes_when_they_part(
     bench: Callable[..., Bench],
 ) -> None:
     opened = standing(bench, [[MIDDLE, (3.2, 9.0)], [MIDDLE, (4.2, 9.0)]])
-    expect(warnings(opened)).to_have_text([re.compile(r"1: 1 and 2 are 0\.20 m apart")])
+    expect(warnings(opened)).to_have_text([re.compile(r"Frame 1: 1 and 2 are 0\.20 m apart")])
     opened.press("Tab", *["Shift+ArrowLeft"] * 2)
     expect(warnings(opened)).to_have_count(0)
     opened.press("n")
@@ -80,7 +82,7 @@ def test_people_in_one_place_are_listed_and_the_warning_goes_when_they_part(
 
 def test_clicking_a_warning_goes_there(bench: Callable[..., Bench]) -> None:
     opened = standing(bench, [[MIDDLE], [(3.0, 11.5)]])
-    opened.page.get_by_role("button", name="2: 1 comes here at 5.0 m/s").click()
+    opened.page.get_by_role("button", name="Frame 2: 1 comes here at 5.0 m/s").click()
     expect(opened.page.locator("strong.place")).to_have_text("Frame 2 of 2")
     assert opened.selected() == "1"
     expect(opened.page.locator(".save-words")).to_have_text("All saved · r1")
@@ -103,14 +105,14 @@ def test_a_dismissed_warning_stays_dismissed_over_a_reload(bench: Callable[..., 
     expect(warnings(opened)).to_have_count(1)
     opened.page.wait_for_timeout(100)
     opened.open()
-    expect(warnings(opened)).to_have_text([re.compile("^2:")])
+    expect(warnings(opened)).to_have_text([re.compile("^Frame 2:")])
     opened.page.get_by_role("button", name="1 dismissed: show it again").click()
     expect(warnings(opened)).to_have_count(2)
 
 
 def test_a_person_who_changed_numbers_can_be_joined_from_the_warning(bench: Callable[..., Bench]) -> None:
     opened = standing(bench, [[MIDDLE, (0.0, 5.0)], [None, (0.0, 5.0), (3.3, 9.0)]])
-    expect(warnings(opened)).to_have_text([re.compile(r"2: 1 vanishes, 3 appears 0\.30 m away")])
+    expect(warnings(opened)).to_have_text([re.compile(r"Frame 2: 1 vanishes, 3 appears 0\.30 m away")])
     opened.page.get_by_role("button", name="Join…").click()
     dialog = opened.page.get_by_role("dialog")
     expect(dialog.locator(".change-list")).to_have_text("Frame 2: 3 becomes 1")
