@@ -18,7 +18,7 @@ from gtm_hit.api.frames import valid
 from gtm_hit.api.jobs import started
 from gtm_hit.api.parsing import TooLarge
 from gtm_hit.api.serializers import LARGEST, StrictBooleanField
-from gtm_hit.api.staff import READS, WRITES, StaffView, answers, dataset_or_404, invalid
+from gtm_hit.api.staff import READS, WRITES, StaffView, answers, caller, dataset_or_404, invalid
 from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.geometry.cylinder import FootRule
 from gtm_hit.models import ApiToken, Dataset
@@ -31,7 +31,7 @@ from gtm_hit.ops.importing.calibrations import UNITS
 from gtm_hit.ops.importing.options import PRESETS, ImportOptions, scene
 
 FORM_BYTES = 1_000_000  # around the archive, generously
-WHOLE = {"min_value": 1, "max_value": LARGEST, "required": False}
+WHOLE: dict[str, Any] = {"min_value": 1, "max_value": LARGEST, "required": False}
 
 
 class FiniteField(serializers.FloatField):
@@ -63,7 +63,9 @@ class SceneValuesSerializer(serializers.Serializer[Any]):
 
 
 class ImportSerializer(serializers.Serializer[Any]):
-    source = serializers.CharField(max_length=300, help_text="a key from /sources/ or /uploads/")
+    source = serializers.CharField(  # type: ignore[assignment]
+        max_length=300, help_text="a key from /sources/ or /uploads/"
+    )
     slug = serializers.SlugField(max_length=80, help_text="an existing dataset gets the frames it lacks")
     name = serializers.CharField(max_length=200, default="", allow_blank=True)
     preset = serializers.ChoiceField(choices=sorted(PRESETS), allow_null=True, default=None)
@@ -76,7 +78,9 @@ class ImportSerializer(serializers.Serializer[Any]):
 
 
 class ImportAnnotationsSerializer(serializers.Serializer[Any]):
-    source = serializers.CharField(max_length=300, help_text="a key from /sources/ or /uploads/")
+    source = serializers.CharField(  # type: ignore[assignment]
+        max_length=300, help_text="a key from /sources/ or /uploads/"
+    )
     format = serializers.ChoiceField(choices=sorted(READERS))
     layer = serializers.CharField(max_length=120, validators=[name_validator], help_text="of the new layer")
     drop = serializers.ListField(
@@ -122,7 +126,7 @@ class BoundedMultiPartParser(MultiPartParser):
 
 
 class Uploads(StaffView):
-    parser_classes = [BoundedMultiPartParser]  # type: ignore[assignment]
+    parser_classes = [BoundedMultiPartParser]
     write_scope = ApiToken.Scope.IMPORT
 
     @extend_schema(
@@ -169,7 +173,7 @@ class Imports(StaffView):
         except FormatError as error:
             reasons = [problem.reason for problem in error.problems]
             raise exceptions.ValidationError({"values": reasons}) from error
-        return started(import_jobs.start_import(source, options, request.user))
+        return started(import_jobs.start_import(source, options, caller(request)))
 
 
 class AnnotationImports(StaffView):
@@ -195,7 +199,7 @@ class AnnotationImports(StaffView):
         drop = [Kind(name) for name in wanted["drop"]]
         try:
             job = annotation_import.start(
-                dataset, source, wanted["format"], wanted["layer"], drop, wanted["hidden"], request.user
+                dataset, source, wanted["format"], wanted["layer"], drop, wanted["hidden"], caller(request)
             )
         except annotation_import.AnnotationImportError as error:
             raise invalid("layer", error) from error

@@ -15,7 +15,7 @@ from rest_framework.response import Response
 
 from gtm_hit.api import shapes
 from gtm_hit.api.frames import refusal
-from gtm_hit.api.staff import ASKS, READS, Conflict, Pages, StaffView, answers, asked
+from gtm_hit.api.staff import ASKS, READS, Conflict, Pages, StaffView, answers, asked, caller
 from gtm_hit.models import ApiToken, Job
 from gtm_hit.ops import exporting, overview
 from gtm_hit.ops import jobs as job_ops
@@ -97,7 +97,7 @@ class RetryJob(JobAction):
         job = job_or_404(pk)
         if not job.finished:
             raise Conflict(_("This job is still under way."))
-        return started(job_ops.retry(job, request.user))
+        return started(job_ops.retry(job, caller(request)))
 
 
 class Download(StaffView):

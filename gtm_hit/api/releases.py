@@ -22,6 +22,7 @@ from gtm_hit.api.staff import (
     Pages,
     StaffView,
     answers,
+    caller,
     dataset_or_404,
     invalid,
     layer_named,
@@ -63,7 +64,7 @@ class Exports(StaffView):
     def post(self, request: Request, slug: str, name: str) -> Response:
         layer = layer_or_404(slug, name)
         wanted = valid(ExportSerializer(data=request.data))
-        return started(exporting.start(layer, request.user, wanted["formats"]))
+        return started(exporting.start(layer, caller(request), wanted["formats"]))
 
 
 class Releases(StaffView, ListAPIView[Release]):
@@ -100,7 +101,7 @@ class Releases(StaffView, ListAPIView[Release]):
         wanted = valid(MakeReleaseSerializer(data=request.data))
         layer = layer_named(dataset, wanted["layer"], "layer")
         order = releases.Order(
-            layer, wanted["licence"], wanted["title"], tuple(wanted["formats"]), request.user
+            layer, wanted["licence"], wanted["title"], tuple(wanted["formats"]), caller(request)
         )
         try:
             return started(releases.start(order))

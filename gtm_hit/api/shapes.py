@@ -135,7 +135,7 @@ class ProgressSerializer(serializers.Serializer[Any]):
 
 class AssignmentShape(serializers.ModelSerializer[Assignment]):
     batch = serializers.IntegerField(source="batch.number")
-    copy = serializers.IntegerField(source="batch.copy")  # type: ignore[assignment]
+    copy = serializers.IntegerField(source="batch.copy")
     worker = serializers.CharField(source="worker.pseudonym", help_text="pseudonym")
     layer = serializers.CharField(source="layer.name")
     frames = serializers.IntegerField(source="frame_count")
@@ -217,7 +217,7 @@ class NumbersQuery(serializers.Serializer[Any]):
 
     def get_fields(self) -> dict[str, Any]:
         # `from` cannot be an attribute's name.
-        bounds = {"min_value": 0, "max_value": LARGEST}
+        bounds: dict[str, Any] = {"min_value": 0, "max_value": LARGEST}
         return {
             "from": serializers.IntegerField(**bounds, default=0, help_text="first frame number"),
             "to": serializers.IntegerField(**bounds, default=LARGEST, help_text="last frame number"),
@@ -236,7 +236,7 @@ class LayersQuery(serializers.Serializer[Any]):
 
 
 class BatchesQuery(serializers.Serializer[Any]):
-    copy = serializers.IntegerField(min_value=1, max_value=LARGEST, required=False)  # type: ignore[assignment]
+    copy = serializers.IntegerField(min_value=1, max_value=LARGEST, required=False)
 
 
 class AssignmentsQuery(serializers.Serializer[Any]):

@@ -36,13 +36,13 @@ learning = [
     path("check/", tutorial.TutorialCheck.as_view()),
     path("done/", tutorial.TutorialDone.as_view()),
 ]
-one_layer = [
+one_layer: list[URLPattern | URLResolver] = [
     path("", datasets.OneLayer.as_view()),
     path("annotations/", datasets.Annotations.as_view()),
     path("statistics/", datasets.Statistics.as_view()),
     path("exports/", releases.Exports.as_view()),
 ]
-one_dataset = [
+one_dataset: list[URLPattern | URLResolver] = [
     path("", datasets.OneDataset.as_view()),
     path("cameras/", datasets.Cameras.as_view()),
     path("frames/", datasets.Frames.as_view()),
@@ -57,7 +57,7 @@ one_dataset = [
     path("releases/<int:number>/", releases.OneRelease.as_view()),
     path("releases/<int:number>/download/", releases.DownloadRelease.as_view()),
 ]
-scripts = [
+scripts: list[URLPattern | URLResolver] = [
     path("datasets/", datasets.Datasets.as_view()),
     path("datasets/<slug:slug>/", include(one_dataset)),
     path("sources/", imports.Sources.as_view()),
