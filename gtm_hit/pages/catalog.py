@@ -25,4 +25,6 @@ class WorkbenchCatalog(JSONCatalog):
 
 
 def workbench_catalog(request: HttpRequest) -> dict[str, Any]:
-    return dict(json.loads(WorkbenchCatalog.as_view()(request).content))
+    view = WorkbenchCatalog()
+    view.setup(request)
+    return dict(json.loads(view.get(request).content))

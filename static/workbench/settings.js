@@ -53,6 +53,8 @@ const TABLE = {
   outline: { value: false, group: "seeing", label: () => gettext("Show the border of the ground area") },
   grid: { value: false, group: "seeing", label: () => gettext("Show a grid of metres on the ground") },
   directions: { value: false, group: "seeing", label: () => gettext("Show where the arrow keys lead") },
+  hints: { value: true, group: "other", label: () => gettext("Hints"), hint: () => gettext("Each one comes once; switched on again, once more.") },
+  hintsShown: { value: [] },
   keys: { value: {} },
   hiddenViews: { value: [] },
   largeView: { value: "" },

@@ -6,6 +6,7 @@ import { element } from "./dom.js";
 import { Filmstrip } from "./filmstrip.js";
 import { finishAssignment } from "./finish.js";
 import { FrameHistory } from "./frame_history.js";
+import { Hints } from "./hints.js";
 import { IdentityActions } from "./identity_actions.js";
 import { nameKeys } from "./key_sheet.js";
 import { Keyboard } from "./keyboard.js";
@@ -74,7 +75,7 @@ export function buildWorkbench(root, session, { mode, home }) {
     const frameHistory = new FrameHistory({ ...session, panes, notices, guard: actions.guard });
     actions.use(frameHistory.table());
     const list = warn(session, { settings, panes, notices, walk, actions, identity });
-    panel.element.append(panelTools(store, perform), list, frameHistory.element);
+    panel.element.append(panelTools(store, perform), list, frameHistory.element, new Hints({ store, panes, settings }).element);
   }
   watch(session, panes, notices);
   walk.carryInto(store.current);

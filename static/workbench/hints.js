@@ -1,0 +1,63 @@
+import { carriedOf } from "./annotation.js";
+import { element } from "./dom.js";
+import { keyFor } from "./keys.js";
+import { gettext } from "./messages.js";
+
+const SHOWN = 20_000; // ms
+
+/** One short hint under the list of people when it is needed for the first time; none comes twice. */
+export class Hints {
+  constructor({ store, panes, settings }) {
+    Object.assign(this, { _store: store, _settings: settings, _timer: null });
+    this._text = element("p", {});
+    const close = element("button", { type: "button", className: "quiet", "aria-label": gettext("Close this hint"), onclick: () => this._hide() }, "✕");
+    this._box = element("div", { className: "hint", hidden: true }, this._text, close);
+    this.element = element("div", { role: "status" }, this._box);
+    store.on("selection", ({ after }) => after !== null && this._give("moving"));
+    store.on("frame", () => this._lookForYellow());
+    store.on("change", () => this._lookForYellow());
+    panes.element.addEventListener("wheel", () => this._give("zooming"), { passive: true });
+    settings.on("change", ({ name, value }) => name === "hints" && this._switch(value));
+  }
+
+  _lookForYellow() {
+    if (carriedOf(this._store.people()).length) this._give("yellow");
+  }
+
+  _give(id) {
+    const shown = this._settings.get("hintsShown");
+    if (!this._settings.get("hints") || shown.includes(id)) return;
+    this._settings.set("hintsShown", [...shown, id]);
+    this._text.textContent = words(id);
+    this._box.hidden = false;
+    clearTimeout(this._timer);
+    this._timer = setTimeout(() => this._hide(), SHOWN);
+  }
+
+  _hide() {
+    this._box.hidden = true;
+  }
+
+  /** Whoever switches them on again wants to read them again. */
+  _switch(on) {
+    if (on) this._settings.reset("hintsShown");
+    else this._hide();
+  }
+}
+
+function words(id) {
+  return {
+    moving: () =>
+      gettext("Arrow keys move the person by one position, with Shift by ten. {zoom} shows the feet large in all views, {help} all keys.", {
+        zoom: keyFor("zoom"),
+        help: keyFor("help"),
+      }),
+    yellow: () =>
+      gettext("Yellow people were carried over and wait to be looked at: {next} goes to the next one, {validate} says that it stands right.", {
+        next: keyFor("nextCarried"),
+        validate: keyFor("validate"),
+      }),
+    zooming: () =>
+      gettext("Drag moves the zoomed picture, a double click makes the view large, {views} sets brightness and contrast.", { views: keyFor("views") }),
+  }[id]();
+}
