@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from playwright.sync_api import Browser, Route, sync_playwright
+from playwright.sync_api import Browser, Route, ViewportSize, sync_playwright
 
 from gtm_hit.formats.camera_json import load_cameras
 from gtm_hit.geometry.grid import Grid
@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parent.parent
 POSITIONS = ROOT.parent / "shared" / "data" / "wildtrack" / "positions_0000-0995.txt"
 CHROMIUM = "/usr/bin/chromium"
 ADDRESS = "http://workbench.test/"
-SCREEN = {"width": 1920, "height": 1080}
+SCREEN: ViewportSize = {"width": 1920, "height": 1080}
 GRID = Grid(columns=480, rows=1440, step=0.025, origin_x=-3.0, origin_y=-9.0)
 FRAME_STEP, SECONDS = 5, 0.5
 FASTEST = 2.5  # m/s; a longer way than that is somebody else

@@ -19,13 +19,15 @@ from pathlib import Path
 from statistics import median, quantiles
 from typing import Any
 
-from playwright.sync_api import Browser, Page, Request, sync_playwright
+from playwright.sync_api import Browser, Page, Request, ViewportSize, sync_playwright
 
 ROOT = Path(__file__).resolve().parent.parent
 CHROMIUM = "/usr/bin/chromium"
-SCREEN = {"width": 1920, "height": 1080}
+SCREEN: ViewportSize = {"width": 1920, "height": 1080}
 KEYS = 120
 WALK = 200  # frames
+# A poor mobile line: every answer two seconds late.
+SLOW = {"offline": False, "latency": 2000, "downloadThroughput": 20_000, "uploadThroughput": 10_000}
 
 # Time from a key's event to the second animation frame after it: by then its pixels were handed over.
 TIMER = """
@@ -100,6 +102,7 @@ def main() -> None:
         report("cold start", cold_start(browser, usual))
         report("arrow keys, 24 people × 7 views", arrow_keys(browser, usual))
         report("arrow keys, 60 people × 12 views", arrow_keys(browser, large))
+        report("placing on a slow network", slow_network(browser, usual))
         report("next frame, prefetched", next_frame(browser, usual))
         report(f"memory over {WALK} frames", memory(browser, usual))
         browser.close()
@@ -204,6 +207,24 @@ def arrow_keys(browser: Browser, address: str) -> dict[str, float]:
     }
     page.context.close()
     return figures
+
+
+def slow_network(browser: Browser, address: str) -> dict[str, float]:
+    """Arrow keys in the next frame while neither its pictures nor saves get through in time."""
+    page = opened(browser, address)
+    client = page.context.new_cdp_session(page)
+    client.send("Network.enable")
+    client.send("Network.emulateNetworkConditions", SLOW)
+    page.keyboard.press("n")
+    page.keyboard.press("Tab")
+    page.evaluate(TIMER)
+    for index in range(KEYS):
+        page.keyboard.press("ArrowLeft" if index % 2 else "ArrowRight")
+        page.wait_for_timeout(37 + index % 13)
+    page.wait_for_timeout(100)
+    samples = page.evaluate("window.samples")
+    page.context.close()
+    return {"keydown → painted, median ms": median(samples), "p95 ms": quantiles(samples, n=20)[-1]}
 
 
 def note(requests: list[str], request: Request) -> None:
