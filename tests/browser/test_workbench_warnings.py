@@ -48,12 +48,17 @@ def test_two_bodies_do_not_fit_within_thirty_centimetres(module_page: Page) -> N
 
 
 def test_nobody_is_faster_than_three_metres_a_second(module_page: Page) -> None:
-    frames = [{1: (0, 0), 2: (5, 5)}, {1: (1.51, 0), 2: (6.49, 5)}]
+    frames: list[dict[int, tuple[float, float]]] = [{1: (0, 0), 2: (5, 5)}, {1: (1.51, 0), 2: (6.49, 5)}]
     assert found(module_page, frames) == [["fast", 5, [1]]]
 
 
 def test_who_vanishes_in_the_middle_and_appears_as_another_is_one_person(module_page: Page) -> None:
-    frames = [{1: (0, 0), 9: (8, 8)}, {1: (0.5, 0), 9: (8, 8)}, {9: (8, 8)}, {2: (1.6, 0), 9: (8, 8)}]
+    frames: list[dict[int, tuple[float, float]]] = [
+        {1: (0, 0), 9: (8, 8)},
+        {1: (0.5, 0), 9: (8, 8)},
+        {9: (8, 8)},
+        {2: (1.6, 0), 9: (8, 8)},
+    ]
     assert found(module_page, frames) == [["renumbered", 15, [1, 2]]]
 
 
