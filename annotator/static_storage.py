@@ -24,5 +24,6 @@ class ModuleManifestStaticFilesStorage(CompressedManifestStaticFilesStorage):
         path = PurePosixPath(name)
         if path.parts[0] in OURS and path.suffix in MINIFIERS:
             text = b"".join(content.chunks()).decode()
+            content.seek(0)  # hashing has read it already
             content = ContentFile(MINIFIERS[path.suffix](text).encode())
         return super()._save(name, content)
