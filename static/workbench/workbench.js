@@ -1,10 +1,8 @@
 import { Actions } from "./actions.js";
 import { Bar } from "./bar.js";
-import { askAboutConflicts } from "./conflicts.js";
 import { directionItems } from "./directions.js";
 import { element } from "./dom.js";
 import { Filmstrip } from "./filmstrip.js";
-import { finishAssignment } from "./finish.js";
 import { FrameHistory } from "./frame_history.js";
 import { Hints } from "./hints.js";
 import { IdentityActions } from "./identity_actions.js";
@@ -24,7 +22,6 @@ import { Round } from "./round.js";
 import { DISPLAYED, Settings } from "./settings.js";
 import { TimeActions } from "./time_actions.js";
 import { Timeline } from "./timeline.js";
-import { Tutorial } from "./tutorial.js";
 import { UndoActions } from "./undo_actions.js";
 import { Views } from "./views.js";
 import { ViewsMenu } from "./views_menu.js";
@@ -46,7 +43,7 @@ export function buildWorkbench(root, session, { mode, home }) {
   panes.addExtra((pane) => directionItems(panes, pane));
   settings.on("change", () => panes.markPeople(true));
   const notices = new Notices();
-  const walk = new Walk({ ...session, notices, finish: () => finishAssignment({ ...session, walk, notices, home }) });
+  const walk = new Walk({ ...session, notices, finish: () => finish({ ...session, walk, notices, home }) });
   const actions = new Actions({ ...session, settings, panes, notices, walk });
   const identity = new IdentityActions({ ...session, panes, notices, guard: actions.guard });
   actions.use(identity.table());
@@ -81,7 +78,20 @@ export function buildWorkbench(root, session, { mode, home }) {
   walk.carryInto(store.current);
 }
 
-function startTutorial(panel, parts) {
+// What few need, and nobody without the server, is fetched when it is needed.
+
+async function finish(parts) {
+  const { finishAssignment } = await import("./finish.js");
+  return finishAssignment(parts);
+}
+
+async function ask(scene, store, conflict) {
+  const { askAboutConflicts } = await import("./conflicts.js");
+  return askAboutConflicts(scene, store, conflict);
+}
+
+async function startTutorial(panel, parts) {
+  const { Tutorial } = await import("./tutorial.js");
   const tutorial = new Tutorial(parts);
   panel.element.prepend(tutorial.element);
   tutorial.start();
@@ -127,7 +137,7 @@ function warn(session, { settings, panes, notices, walk, actions, identity }) {
 function watch({ saver, store, scene, images, activity }, panes, notices) {
   let asking = Promise.resolve();
   const askInTurn = (conflict) => {
-    asking = asking.then(async () => saver.resolve(conflict.frame, await askAboutConflicts(scene, store, conflict)));
+    asking = asking.then(async () => saver.resolve(conflict.frame, await ask(scene, store, conflict)));
   };
   saver.conflicts().forEach(askInTurn);
   saver.on("conflict", askInTurn);
