@@ -18,6 +18,7 @@ export function ask({ title, body, buttons, wide = false }) {
     dialog.addEventListener("close", () => resolve(dialog.returnValue || null));
     dialog.showModal();
     (row.find((button) => button.classList.contains("main") && !button.disabled) ?? row[0])?.focus();
+    dialog.scrollTop = 0; // a long one is read from its beginning, though the button with the focus is at its end
   });
 }
 

@@ -4,7 +4,7 @@
  */
 const GAP = 2;
 const PANEL = 248; // px, a panel column
-const LARGE_COUNTS = 1.1; // against the width of the small ones
+const SMALL_COUNT = 2; // how much their width is worth against the large one's: they are to be read, too
 const PANEL_CELL = 300; // px, the smallest cell that can hold the panel
 
 /** Pure. @returns {{columns, rows, panel: "cell"|"column", width, height}} of one pane */
@@ -40,7 +40,7 @@ export function arrangeAround(count, room, aspect) {
         if (largeRows === 0 || cells < others) continue;
         const [small, high] = [width / columns, room.height / rows];
         const large = Math.min(small * (columns - 1), high * largeRows * aspect);
-        const worth = LARGE_COUNTS * large + Math.min(small, high * aspect);
+        const worth = large + SMALL_COUNT * Math.min(small, high * aspect);
         if (!best || worth > best.worth + 0.5) best = { columns, rows, largeColumns: columns - 1, largeRows, worth };
       }
     }

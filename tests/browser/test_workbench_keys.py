@@ -81,6 +81,15 @@ def test_escape_leaves_a_key_as_it_is_and_the_sheet_open(bench: Callable[..., Be
 
 
 @pytest.mark.django_db(transaction=True)
+def test_the_sheet_is_read_from_its_beginning_on_a_small_screen(bench: Callable[..., Bench]) -> None:
+    opened = bench()
+    opened.page.set_viewport_size({"width": 1280, "height": 800})
+    opened.open().press("?")
+    dialog = opened.page.get_by_role("dialog")
+    assert dialog.evaluate("(node) => node.scrollHeight > node.clientHeight && node.scrollTop") == 0
+
+
+@pytest.mark.django_db(transaction=True)
 def test_all_keys_can_be_as_they_were_at_first(bench: Callable[..., Bench]) -> None:
     opened = bench().open()
     opened.press("?")

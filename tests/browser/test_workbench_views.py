@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import Locator, expect
+from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.bench import Bench, pane_of, well_seen
 
@@ -34,6 +34,18 @@ def test_a_double_click_makes_a_view_large_with_the_others_around_it(bench: Call
         assert bounds is not None
         assert bounds["width"] >= 120
         assert bounds["y"] + bounds["height"] <= stage["y"] + stage["height"] + 1
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 700), (1920, 980), (3840, 2060)])
+def test_eight_views_with_a_large_one_leave_no_cell_empty(module_page: Page, width: int, height: int) -> None:
+    script = """async (room) => {
+      const { arrangeAround } = await import("/static/workbench/layout.js");
+      return arrangeAround(8, room, 16 / 9);
+    }"""
+    found = module_page.evaluate(script, {"width": width, "height": height})
+    taken = found["largeColumns"] * found["largeRows"] + 7
+    assert found["columns"] * found["rows"] == taken
+    assert found["largeColumns"] >= 2
 
 
 def test_a_double_click_on_the_ground_leaves_nobody_behind(bench: Callable[..., Bench]) -> None:
