@@ -18,3 +18,8 @@ STORAGES = {
 }
 # A file, as in use: SQLite in shared memory refuses instead of waiting when several threads write.
 DATABASES["default"]["TEST"] = {"NAME": str(DATA_DIR / "tests.sqlite3")}  # noqa: F405
+# The live server of pytest-django serves static files only for the app under its plain name.
+INSTALLED_APPS = [
+    "django.contrib.staticfiles" if name == "annotator.apps.StaticFiles" else name
+    for name in INSTALLED_APPS  # noqa: F405
+]
