@@ -19,7 +19,7 @@ IMPORT = re.compile(r"""(?:from|import)\s*\(?["'](\.[^"']+)["']""")
 
 @pytest.fixture(scope="module")
 def collected(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The static files as `make run` and production collect them, in a process with the product's settings."""
+    """The static files as production collects them, in a process with the product's settings."""
     data = tmp_path_factory.mktemp("data")
     environment = {"PATH": os.environ["PATH"], "SECRET_KEY": "s" * 50, "DATA_DIR": str(data)}
     command = [sys.executable, "manage.py", "collectstatic", "--noinput", "--verbosity", "0"]
