@@ -1,6 +1,6 @@
 """From a folder of images to a release, with nothing but the REST API: needs Python and httpx.
 
-    python docs/example_client.py ADDRESS KEY incoming/MultiviewX mvx truth '{"preset": "multiviewx"}'
+python docs/example_client.py ADDRESS KEY incoming/MultiviewX mvx truth '{"preset": "multiviewx"}'
 """
 
 from __future__ import annotations
