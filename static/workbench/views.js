@@ -14,7 +14,7 @@ export class Views {
   table() {
     return {
       toggleView: (event) => this._toggleNumber(Number(event.key)),
-      largeView: () => this.enlarge(this.panes.active),
+      largeView: () => this.toggleLarge(),
       allViews: () => this.showAll(),
     };
   }
@@ -28,6 +28,12 @@ export class Views {
     const others = this.settings.get("hiddenViews").filter((id) => id !== pane.view.id);
     if (!on && this.settings.get("largeView") === pane.view.id) this.settings.set("largeView", "");
     this.settings.set("hiddenViews", on ? others : [...others, pane.view.id]);
+  }
+
+  /** The pointer may lie over another view after the first press, so the second one goes back whatever is active. */
+  toggleLarge() {
+    if (this.settings.get("largeView")) return this.settings.set("largeView", "");
+    this.enlarge(this.panes.active);
   }
 
   /** Large with the others around it; all alike again when it is large already. */

@@ -73,9 +73,9 @@ def test_v_makes_the_active_view_large_and_all_alike_again(bench: Callable[..., 
     opened.press("v")
     expect(opened.pane(2)).to_have_class(LARGE)
     opened.press("v")
-    opened.painted()
-    sizes = {round(width(pane)) for pane in opened.page.locator(".pane").all()}
-    assert len(sizes) == 1
+    opened.page.wait_for_function(
+        "() => new Set([...document.querySelectorAll('.pane')].map((pane) => pane.offsetWidth)).size === 1"
+    )
 
 
 def test_a_number_hides_a_view_and_shows_it_again(bench: Callable[..., Bench]) -> None:
