@@ -156,4 +156,6 @@ LOGGING = {
         "handlers": ["console"],
         "level": environment.one_of("LOG_LEVEL", "INFO", ("DEBUG", "INFO", "WARNING", "ERROR")),
     },
+    # A folder as broker has no host name, which Kombu finds remarkable.
+    "loggers": {"kombu.connection": {"level": "ERROR"}},
 }
