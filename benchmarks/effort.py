@@ -95,13 +95,13 @@ def read_frames(path: Path) -> list[list[int]]:
     return [frames[number] for number in sorted(frames)]
 
 
-def linked(frames: list[list[int]]) -> list[dict[int, int]]:
+def linked(frames: list[list[int]], fastest: float = FASTEST) -> list[dict[int, int]]:
     """Position by identity: who moved least to the next frame is the same person, nearest pairs first."""
     people = [dict(enumerate(frames[0]))]
     unused = len(frames[0])
     for places in frames[1:]:
         before = list(people[-1].items())
-        pairs = nearest_pairs([position for _, position in before], places)
+        pairs = nearest_pairs([position for _, position in before], places, fastest)
         identities = {there: before[here][0] for here, there in pairs}
         for there in range(len(places)):
             if there not in identities:
@@ -111,13 +111,13 @@ def linked(frames: list[list[int]]) -> list[dict[int, int]]:
     return people
 
 
-def nearest_pairs(before: list[int], after: list[int]) -> list[tuple[int, int]]:
+def nearest_pairs(before: list[int], after: list[int], fastest: float) -> list[tuple[int, int]]:
     """Indices of those who can be the same, each at most once."""
     moved = np.linalg.norm(GRID.metres(before)[:, None] - GRID.metres(after)[None], axis=2)
     pairs: list[tuple[int, int]] = []
     for flat in np.argsort(moved, axis=None, kind="stable"):
         here, there = divmod(int(flat), len(after))
-        if moved[here, there] > FASTEST * SECONDS:
+        if moved[here, there] > fastest * SECONDS:
             break
         if all(here != one and there != other for one, other in pairs):
             pairs.append((here, there))
