@@ -9,7 +9,7 @@ from gtm_hit.ops.annotation_rules import Row
 from gtm_hit.ops.annotations import ROW_FIELDS
 
 # Frames on each side: as many as a movement is read from.
-REACH = 3
+REACH = 4
 
 
 @dataclass(frozen=True)

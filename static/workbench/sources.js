@@ -1,7 +1,7 @@
 /** Frames that people can be carried over from: of the batch, and accepted ones beside it. */
 import { VALIDATED } from "./annotation.js";
 
-const LOOK_BACK = 3; // frames on one side that movement is read from
+const LOOK_BACK = 4; // frames on one side that movement is read from
 
 /**
  * Frames with people before (`direction` -1) or after (1) a frame, nearest first.

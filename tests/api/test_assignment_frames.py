@@ -35,7 +35,7 @@ def test_the_scene_brings_accepted_people_from_beyond_the_batchs_border(bob: Cal
     finish(Assignment.objects.get(worker__external_id="alice"))
     Assignment.objects.filter(worker__external_id="alice").update(state=Assignment.State.ACCEPTED)
     before = bob.get(SCENE).json()["neighbours"]["before"]
-    assert [frame["number"] for frame in before] == [45, 40, 35]
+    assert [frame["number"] for frame in before] == [45, 40, 35, 30]
     assert before[0]["annotations"] == [row(7, 20)]
 
 

@@ -66,7 +66,23 @@ def test_who_walked_is_expected_a_little_less_than_a_step_further(module_page: P
 
 def test_an_evened_out_movement_of_three_frames_is_continued(module_page: Page) -> None:
     places = predicted(module_page, "[[one(1, [30, 30])], [one(1, [20, 30])], [one(1, [20, 30])]]")
-    assert places == {"1": [36, 30]}  # 0.93 of 0.65 of the last step
+    assert places == {"1": [35, 30]}  # 0.93 of 1 / (1 + 0.8) of the last step
+
+
+def test_an_evened_out_movement_of_four_frames_is_continued(module_page: Page) -> None:
+    sources = "[[one(1, [30, 30])], [one(1, [30, 30])], [one(1, [30, 30])], [one(1, [20, 30])]]"
+    assert predicted(module_page, sources) == {"1": [32, 30]}  # 0.93 of 0.64 / (1 + 0.8 + 0.64) of 10
+
+
+def test_who_only_seems_to_move_stays(module_page: Page) -> None:
+    """Half a position of the grid in half a second: clicks are not better than that."""
+    sources = "[[one(1, [21, 30])], [one(1, [20, 30])], [one(1, [20, 31])], [one(1, [20, 30])]]"
+    assert predicted(module_page, sources) == {"1": [21, 30]}
+
+
+def test_a_step_faster_than_people_walk_ends_the_movement_before_it(module_page: Page) -> None:
+    sources = "[[one(1, [40, 30])], [one(1, [35, 30])], [one(1, [5, 30])], [one(1, [4, 30])]]"
+    assert predicted(module_page, sources) == {"1": [45, 30]}
 
 
 def test_going_backwards_the_movement_is_continued_backwards(module_page: Page) -> None:

@@ -36,8 +36,8 @@ def test_the_frames_next_to_the_batch_come_nearest_first(dataset: Dataset) -> No
     annotated(batch(dataset, 1), f40=[row(1, 10)], f45=[row(1, 11), row(2, 20)])
     annotated(batch(dataset, 3), f100=[row(8, 80)])
     found = neighbours(batch(dataset, 2))
-    assert [frame.number for frame in found.before] == [45, 40, 35]
-    assert [frame.number for frame in found.after] == [100, 105, 110]
+    assert [frame.number for frame in found.before] == [45, 40, 35, 30]
+    assert [frame.number for frame in found.after] == [100, 105, 110, 115]
     assert found.before[0].annotations == [row(1, 11), row(2, 20)]
     assert found.before[1].annotations == [row(1, 10)]
     assert found.after[0].annotations == [row(8, 80)]
@@ -54,7 +54,7 @@ def test_the_first_batch_has_nothing_before_it(dataset: Dataset) -> None:
     annotated(batch(dataset, 2), f50=[row()])
     found = neighbours(batch(dataset, 1))
     assert found.before == []
-    assert [frame.number for frame in found.after] == [50, 55, 60]
+    assert [frame.number for frame in found.after] == [50, 55, 60, 65]
 
 
 def test_a_batch_two_further_is_no_neighbour(dataset: Dataset) -> None:
