@@ -18,6 +18,7 @@ from gtm_hit.formats.manifest import verify
 from gtm_hit.formats.pom_reader import read_pom
 from gtm_hit.models import Dataset, Layer, LayerFrame
 from gtm_hit.ops.coverage import table
+from gtm_hit.ops.importing.dataset import ImportFailed
 from tests.ops.square_layer import content, export, fill, make_square, take_in
 from tests.work_scene import make_layer
 
@@ -101,6 +102,29 @@ def test_nothing_changes_on_the_way_out_and_in(square: Layer, tmp_path: Path, wa
     back = take_in(square.dataset, folder / part, reader)
     assert content(back.layer) == content(square)
     assert back.dropped == {}
+
+
+@pytest.mark.parametrize(("kind", "reader"), sorted({(kind, reader) for kind, _, reader in WAYS.values()}))
+def test_the_whole_folder_of_an_export_is_taken_in(
+    layer: Layer, tmp_path: Path, kind: str, reader: str
+) -> None:
+    back = take_in(layer.dataset, export(layer, tmp_path / "out", kind), reader)
+    assert content(back.layer) == content(layer)
+
+
+def test_every_format_of_one_export_is_found_in_it(layer: Layer, tmp_path: Path) -> None:
+    folder = export(layer, tmp_path / "out", "wildtrack", "mot", "coco", "csv", "text")
+    for reader in ("wildtrack", "mot", "coco", "csv", "text"):
+        assert content(take_in(layer.dataset, folder, reader, reader).layer) == content(layer)
+
+
+def test_a_link_out_of_the_folder_is_not_followed(layer: Layer, tmp_path: Path) -> None:
+    folder = export(layer, tmp_path / "out", "mot")
+    (folder / "mot").rename(tmp_path / "elsewhere")
+    (folder / "mot").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(ImportFailed):
+        take_in(layer.dataset, folder, "mot")
+    assert not Layer.objects.filter(name="back").exists()
 
 
 def test_multiviewx_comes_back_as_it_went_in_every_format(multiviewx: Layer, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from django.db import IntegrityError, transaction
 from gtm_hit.formats.problems import FormatError, Problem
 from gtm_hit.models import Annotation, Dataset, Frame, Layer
 from gtm_hit.ops.annotation_import import findings as sieve
+from gtm_hit.ops.annotation_import.exported import part_of
 from gtm_hit.ops.annotation_import.findings import Findings, Kind
 from gtm_hit.ops.annotation_import.placing import place
 from gtm_hit.ops.annotation_import.reading import READERS, Report, Scene
@@ -95,7 +96,7 @@ def _read(dataset: Dataset, source: AnnotationSource, report: Report, findings: 
     cameras = dataset.calibrated_cameras()
     numbers = list(Frame.objects.filter(dataset=dataset).order_by("number").values_list("number", flat=True))
     scene = Scene(dataset, [camera.name for camera in cameras], numbers)
-    found = READERS[source.format](source.path, scene, report)
+    found = READERS[source.format](part_of(source.path, source.format), scene, report)
     known = frozenset(numbers)
     if isinstance(found, Boxes):
         boxes = sieve.of_known_frames(found, known, findings)

@@ -13,7 +13,6 @@ from gtm_hit.formats import frame_column_row
 from gtm_hit.formats.coco import CocoFile, CocoImage, read_coco
 from gtm_hit.formats.csv_metres import read_csv
 from gtm_hit.formats.dataset_folder import DatasetFolder
-from gtm_hit.formats.layout import ANNOTATION_FOLDER
 from gtm_hit.formats.mot import MotTable, read_mot
 from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.formats.wildtrack_json import MOST_ID, FrameAnnotations, read_frame
@@ -45,15 +44,14 @@ class Scene:
 
 
 def read_wildtrack(path: Path, scene: Scene, report: Report) -> People:
-    """A folder of per-frame JSON, or a dataset's folder that has one."""
+    """A folder of per-frame JSON."""
     problems = ProblemList(path)
-    root = path / ANNOTATION_FOLDER if (path / ANNOTATION_FOLDER).is_dir() else path
-    if not root.is_dir():
-        problems.add("", "no such folder of JSON files", root)
+    if not path.is_dir():
+        problems.add("", "no such folder of JSON files")
         problems.raise_if_any()
-    files = DatasetFolder(root, problems).by_number(root, {".json"})
+    files = DatasetFolder(path, problems).by_number(path, {".json"})
     if not files and not problems:
-        problems.add("", "no JSON files in this folder", root)
+        problems.add("", "no JSON files in this folder")
     # Positions off the grid are told later, person by person.
     anywhere = Grid(MOST_ID, 1, 1.0, 0.0, 0.0)
     frames = []
