@@ -55,6 +55,37 @@ def test_a_wrong_value_stops_the_start_and_names_the_variable(name: str, value: 
     assert name in result.stderr.strip().splitlines()[-1]
 
 
+def manage(*arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "manage.py", *arguments],
+        cwd=ROOT,
+        env={"PATH": os.environ["PATH"], **variables},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_a_command_makes_its_data_folder(tmp_path: Path) -> None:
+    result = manage("migrate", "-v0", SECRET_KEY="s" * 50, DATA_DIR=str(tmp_path / "new" / "data"))
+    assert result.returncode == 0, result.stderr
+    assert (tmp_path / "new" / "data" / "gtm.sqlite3").is_file()
+
+
+def test_a_wrong_setting_is_told_in_one_line(tmp_path: Path) -> None:
+    result = manage("migrate", DATA_DIR=str(tmp_path))
+    assert result.returncode != 0
+    assert result.stderr == "SECRET_KEY must be set (see .env.example)\n"
+
+
+def test_a_data_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    result = manage("migrate", SECRET_KEY="s" * 50, DATA_DIR=str(tmp_path / "file" / "data"))
+    assert result.returncode != 0
+    assert str(tmp_path / "file" / "data") in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+
+
 def variables_read() -> set[str]:
     return set(VARIABLE.findall((ROOT / "annotator" / "settings.py").read_text(encoding="utf-8")))
 
