@@ -53,6 +53,7 @@ $(ENVIRONMENT): requirements.txt
 	@scripts/make-environment $(PYTHON) requirements.txt
 	@touch $@
 
-$(DEV_ENVIRONMENT): requirements.txt requirements-dev.txt
+$(DEV_ENVIRONMENT): requirements.txt requirements-dev.txt requirements-alone.txt
 	@scripts/make-environment $(PYTHON) requirements-dev.txt
+	@$(BIN)/pip install --quiet --disable-pip-version-check --no-deps -r requirements-alone.txt
 	@touch $(ENVIRONMENT) $@

@@ -1,6 +1,6 @@
-"""The demo scene's truth against a scripted, imperfect layer, by our metrics and by motmetrics' own.
+"""The demo scene's truth against a scripted, imperfect layer, by our metrics, by motmetrics and by TrackEval.
 
-`python -m benchmarks.imperfect_layer` prints both side by side.
+`python -m benchmarks.imperfect_layer` prints them side by side.
 """
 
 from __future__ import annotations
@@ -13,9 +13,8 @@ from gtm_hit.demo.scene import read_scene
 from gtm_hit.metrics import detection, tracking
 from gtm_hit.metrics.annotations import Annotations, Ids, by_frame
 from gtm_hit.metrics.matching import RADIUS, distances_between
-
-MISSED, INVENTED, SWAPS = 0.08, 0.05, 5
-NOISE, BIAS = 0.08, (0.04, -0.02)  # metres
+from tests.metrics import trackeval_scores
+from tests.metrics.scenes import imperfect
 
 
 def demo_truth() -> Annotations:
@@ -24,26 +23,6 @@ def demo_truth() -> Annotations:
         np.array([row.number for row in rows]),
         np.array([[row.x, row.y] for row in rows]),
         np.array([row.person for row in rows]),
-    )
-
-
-def imperfect(people: Annotations, rng: np.random.Generator) -> Annotations:
-    """Everybody a little off and to one side, some missed, some invented, some who go on as somebody else."""
-    persons = people.identities().copy()
-    frames = np.unique(people.frames)
-    for frame in rng.choice(frames[1:], SWAPS, replace=False):
-        one, other = rng.choice(np.unique(persons[people.frames == frame]), 2, replace=False)
-        later = people.frames >= frame
-        mine, theirs = later & (persons == one), later & (persons == other)
-        persons[mine], persons[theirs] = other, one
-    kept = rng.random(len(people)) >= MISSED
-    xy = people.xy + BIAS + rng.normal(0.0, NOISE, people.xy.shape)
-    invented = np.flatnonzero(rng.random(len(people)) < INVENTED)
-    low, high = people.xy.min(axis=0), people.xy.max(axis=0)
-    return Annotations(
-        np.concatenate((people.frames[kept], people.frames[invented])),
-        np.concatenate((xy[kept], rng.uniform(low, high, (len(invented), 2)))),
-        np.concatenate((persons[kept], persons.max() + 1 + np.arange(len(invented)))),
     )
 
 
@@ -89,6 +68,9 @@ def by_ours(people: Annotations, found: Annotations) -> dict[str, float]:
         "ID recall": identity.id_recall,
         "swapped": identity.switches,
         "HOTA": identity.hota.hota,
+        "DetA": identity.hota.detection,
+        "AssA": identity.hota.association,
+        "LocA": identity.hota.localisation,
     }
 
 
@@ -99,12 +81,15 @@ def _ids(annotations: Annotations, rows: Ids) -> list[int]:
 def main() -> None:
     people = demo_truth()
     found = imperfect(people, np.random.default_rng(1))
-    ours, theirs = by_ours(people, found), by_motmetrics(people, found)
+    ours, others = (
+        by_ours(people, found),
+        (by_motmetrics(people, found), trackeval_scores.scores(people, found)),
+    )
     print(f"{len(people)} annotations in {len(np.unique(people.frames))} frames; {len(found)} in the layer")
-    print(f"{'':<14}{'ours':>10}{'motmetrics':>12}")
+    print(f"{'':<14}{'ours':>10}{'motmetrics':>12}{'TrackEval':>12}")
     for name, value in ours.items():
-        other = f"{theirs[name]:12.4f}" if name in theirs else f"{'–':>12}"
-        print(f"{name:<14}{value:10.4f}{other}")
+        cells = (f"{scores[name]:12.4f}" if name in scores else f"{'–':>12}" for scores in others)
+        print(f"{name:<14}{value:10.4f}{''.join(cells)}")
 
 
 if __name__ == "__main__":
