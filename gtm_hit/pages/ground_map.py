@@ -109,7 +109,7 @@ class GroundMap:
         start, name = (self.grid.origin_y, "Y") if self.turned else (self.grid.origin_x, "X")
         for value in self._round_values(start, self.width):
             yield Tick(value - start, self.height + 2.2 * self.unit, f"{value:g}")
-        yield Tick(self.width + 3.3 * self.unit, self.height + 2.2 * self.unit, f"{name} m")
+        yield Tick(self.width - self.unit, self.height + 4.0 * self.unit, f"{name} m")
 
     def upright_ticks(self) -> Iterator[Tick]:
         """Figures in metres left of the ground."""
