@@ -12,6 +12,7 @@ import { Pane } from "/static/workbench/pane.js";
 import { Saver } from "/static/workbench/saver.js";
 import { Scene } from "/static/workbench/scene.js";
 import { Store } from "/static/workbench/store.js";
+import { Tour } from "/static/workbench/tour.js";
 import { buildWorkbench } from "/static/workbench/workbench.js";
 
 const NEAR = 0.05; // metres from the truth that are near enough
@@ -53,6 +54,7 @@ function makeSession(scene, journal) {
 class Annotator {
   constructor({ scene, store }, truth, plan, seed) {
     Object.assign(this, { scene, store, plan });
+    this._tour = new Tour({ scene, store });
     this._truth = new Map(truth.map((people, index) => [store.numbers[index], new Map(Object.entries(people).map(([id, position]) => [Number(id), position]))]));
     this._number = new Map(); // of the truth's people, in the workbench
     this._who = new Map(); // and back
@@ -165,7 +167,7 @@ class Annotator {
     const wrong = this._yellow().filter(({ person }) => person !== one.person && !(this._here(person) && this._isNear(person)));
     const right = this._yellow().length - wrong.length;
     if (!right && !wrong.length && !this._missing().length) return false;
-    const next = this._yellow().find(({ person }) => person > one.person) ?? this._yellow()[0];
+    const next = this._tour.next(one.person);
     if (!this.plan.skip || (wrong.length && one.state === "carried" && wrong.includes(next))) this._key("Enter");
     else if (wrong.length) this._clickRow(wrong[0].person);
     else if (right) this._key("Enter", { shiftKey: true });

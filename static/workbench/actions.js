@@ -1,4 +1,4 @@
-import { carriedOf, asList } from "./annotation.js";
+import { asList, carriedOf } from "./annotation.js";
 import * as commands from "./commands.js";
 import { Dragging } from "./dragging.js";
 import { Ghost } from "./ghost.js";
@@ -10,6 +10,7 @@ import { Moving } from "./moving.js";
 import { showSettings } from "./settings_dialog.js";
 import { Sightings } from "./sightings.js";
 import { Sizes } from "./sizes.js";
+import { Tour } from "./tour.js";
 
 const DOUBLE = 1000; // ms; the longest double click that systems offer is shorter
 
@@ -26,6 +27,7 @@ export class Actions {
     this.moving = new Moving(this);
     this.sizes = new Sizes(this);
     this.dragging = new Dragging(this);
+    this.tour = new Tour(this);
     this.setControls = () => {};
     this.afterMove = () => {}; // a right click has put the selected person where it is
   }
@@ -157,9 +159,8 @@ export class Actions {
   }
 
   selectCarried() {
-    const waiting = carriedOf(this.store.people());
-    if (!waiting.length) return this.notices.say(gettext("Nobody is yellow in this frame"));
-    const next = waiting.find(({ person }) => person > (this.store.selection ?? -1)) ?? waiting[0];
+    const next = this.tour.next(this.store.selection);
+    if (!next) return this.notices.say(gettext("Nobody is yellow in this frame"));
     this.select(next.person);
   }
 

@@ -52,9 +52,7 @@ export class Round {
 
   /** @returns {boolean} whether somebody is yellow */
   _selectNext() {
-    const waiting = carriedOf(this._store.people());
-    const from = this._store.selection ?? this._passed.at(-1) ?? -1;
-    const next = waiting.find(({ person }) => person > from) ?? waiting[0];
+    const next = this._actions.tour.next(this._store.selection ?? this._passed.at(-1) ?? null);
     if (next) this._store.select(next.person);
     return next !== undefined;
   }

@@ -90,6 +90,35 @@ def test_going_backwards_the_movement_is_continued_backwards(module_page: Page) 
     assert places == {"1": [24, 30]}
 
 
+def test_who_walks_out_of_the_ground_area_is_not_carried_along(module_page: Page) -> None:
+    sources = "[[one(1, [99, 30]), one(2, [50, 30])], [one(1, [95, 30]), one(2, [50, 30])]]"
+    assert predicted(module_page, sources, "{leaving: false}") == {"2": [50, 30]}
+    assert predicted(module_page, sources) == {"1": [99, 30], "2": [50, 30]}
+
+
+def test_who_walks_along_the_border_is_carried_along(module_page: Page) -> None:
+    sources = "[[one(1, [99, 30])], [one(1, [98, 26])]]"
+    assert predicted(module_page, sources, "{leaving: false}") == {"1": [99, 34]}
+
+
+def test_yellow_people_come_nearest_first_and_keep_their_turn(module_page: Page) -> None:
+    turns = run(
+        module_page,
+        {"tour": "Tour"},
+        """
+        const store = frames([one(1, [0, 0]), one(2, [50, 0]), one(3, [10, 0]), one(4, [60, 0])].map(
+          (a) => annotation({...a, state: "carried"})));
+        const tour = new Tour({scene, store});
+        const walk = (from) => { const found = []; for (let next = tour.next(from); found.length < 4;
+          next = tour.next(next.person)) found.push(next.person); return found; };
+        const before = walk(null);
+        store.apply([{frame: 0, person: 3, after: annotation({...store.person(3), position: at([58, 0])})}]);
+        return [before, walk(null), walk(3)];
+        """,
+    )
+    assert turns == [[1, 3, 2, 4], [1, 3, 2, 4], [2, 4, 1, 3]]
+
+
 def test_nobody_is_expected_to_run_faster_than_people_walk(module_page: Page) -> None:
     """Half a second for 2 m: two people were mixed up."""
     assert predicted(module_page, "[[one(1, [40, 30])], [one(1, [20, 30])]]") == {"1": [40, 30]}
