@@ -309,6 +309,11 @@ class Annotator {
     return { sigma, variance: (sigma ** 2 * (a * a + b * b + c * c + d * d)) / (a * d - b * c) ** 2 };
   }
 
+  /** By somebody else: an arrow key goes past him, and never onto his position. */
+  _isOccupied(position) {
+    return Boolean(this.store.occupant(position, this.store.selection));
+  }
+
   /** The next press on the shortest way, and how many there are. */
   _arrow(from, to) {
     const { columns, rows } = this.scene.grid;
@@ -319,7 +324,7 @@ class Annotator {
     let best = { cost: Infinity };
     for (let i = -reach; i <= reach; i += 1) {
       for (let j = -reach; j <= reach; j += 1) {
-        if (Math.hypot(i, j) > reach) continue;
+        if (Math.hypot(i, j) > reach || this._isOccupied(to - i - j * columns)) continue;
         const [x, y] = [presses(dx - i, this.plan.far, inside.x), presses(dy - j, this.plan.far, inside.y)];
         if (x.cost + y.cost < best.cost) best = { cost: x.cost + y.cost, x, y };
       }

@@ -3,6 +3,7 @@ import * as commands from "./commands.js";
 import { Dragging } from "./dragging.js";
 import { Ghost } from "./ghost.js";
 import { Guard } from "./guard.js";
+import { Heads } from "./heads.js";
 import { showHelp } from "./help.js";
 import { keyFor } from "./keys.js";
 import { gettext } from "./messages.js";
@@ -22,6 +23,7 @@ export class Actions {
   constructor({ scene, store, history, saver, settings, panes, notices, walk }) {
     Object.assign(this, { scene, store, history, saver, settings, panes, notices, walk });
     this.guard = new Guard(this);
+    this.heads = new Heads(this);
     this.ghost = new Ghost(this);
     this.sightings = new Sightings(this);
     this.moving = new Moving(this);
@@ -51,6 +53,8 @@ export class Actions {
       validateAll: () => this.validateAll(),
       validateNext: () => this.validate() && this.selectCarried(),
       remove: () => this.remove(),
+      moveHere: () => this.moveUnderPointer(),
+      heads: () => this.heads.toggle(),
       nextPerson: () => this.selectNeighbour(1),
       previousPerson: () => this.selectNeighbour(-1),
       nextCarried: () => this.selectCarried(),
@@ -88,6 +92,19 @@ export class Actions {
 
   moveHere(pane, at, event) {
     if (this.moving.moveHere(pane, at, event)) this.afterMove();
+  }
+
+  /** What a right click does, by a key. */
+  moveUnderPointer() {
+    if (this.dragging.active) return;
+    const under = this.pointer.under();
+    if (!under) return this.notices.say(gettext("Point at the feet in one of the views"));
+    this.moveHere(under.pane, under.at, under.event);
+  }
+
+  /** Clicks mean heads: what a box covers can be clicked on, and nobody is taken hold of. */
+  get pointsThrough() {
+    return this.heads.active;
   }
 
   sight(pane, at, event) {
@@ -177,6 +194,7 @@ export class Actions {
   escape() {
     this.setControls(false);
     if (this.dragging.cancel()) return;
+    if (this.heads.active) return this.heads.toggle(false);
     if (this.panes.zoomed) return this.panes.zoom(false);
     this.store.select(null);
   }

@@ -20,8 +20,8 @@ export class CameraView {
     this._lines = null;
   }
 
-  ground(point) {
-    return this._scene.toGround(this.index, point);
+  ground(point, z = 0) {
+    return this._scene.toGround(this.index, point, z);
   }
 
   /** Where a ground point is seen, or null. */

@@ -2,6 +2,7 @@ import { groundLine } from "../geometry/ground.js";
 import { annotation } from "./annotation.js";
 import { crossItem, lineItem, readoutItem } from "./hints_on_ground.js";
 import { CYAN, LOOKS } from "./looks.js";
+import { gettext } from "./messages.js";
 import { spotOn, spotWords } from "./spot.js";
 
 /**
@@ -9,11 +10,13 @@ import { spotOn, spotWords } from "./spot.js";
  * along which the view's ray runs, the position in metres, and what speaks against it.
  */
 export class Ghost {
-  constructor({ scene, store, panes, guard, settings }) {
-    Object.assign(this, { _scene: scene, _store: store, _panes: panes, _guard: guard, _settings: settings });
+  constructor({ scene, store, panes, guard, settings, heads }) {
+    Object.assign(this, { _scene: scene, _store: store, _panes: panes, _guard: guard, _settings: settings, _heads: heads });
     this._shown = null; // {pane, at, spot, words, annotation, look}
     panes.addExtra((pane) => this._items(pane));
+    this._doubtAt = null; // fetched when the pointer comes first
     store.on("frame", () => this.hide());
+    heads.on("change", () => this.hide());
     settings.watch("ghost", (on) => on || this.hide());
   }
 
@@ -21,17 +24,48 @@ export class Ghost {
   hover(pane, at, over) {
     const selected = this._store.selected();
     if (!this._settings.get("ghost") || !this._canPlace(pane, at) || (over && !selected)) return this.hide();
-    const ground = pane.view.ground(pane.transform.toSource(at.x, at.y));
-    const spot = spotOn(this._scene, this._store, ground, over ? selected.person : null);
+    const moved = over && selected;
+    const spot = spotOn(this._scene, this._store, this._heads.ground(pane, at, moved), moved?.person ?? null);
     if (spot.position !== null && this._isShown(pane, spot, over)) return;
-    this._shown = { pane, at, spot, over, words: spotWords(this._scene, spot), ...this._figure(spot, over && selected) };
+    const doubt = this._doubt(pane, spot, moved);
+    this._shown = { pane, at, spot, over, words: this._words(spot, doubt), ...this._figure(spot, moved) };
+    this._point(doubt.settles);
     this._panes.markPeople();
   }
 
   hide() {
     if (!this._shown) return;
     this._shown = null;
+    this._point(null);
     this._panes.markPeople();
+  }
+
+  _words(spot, { metres, settles }) {
+    const words = spotWords(this._scene, spot);
+    if (this._heads.active) words.push(gettext("the top of the head is here"));
+    if (settles) words.push(gettext("± {cm} cm: Alt + click in {view}, too", { cm: Math.round(100 * metres), view: settles.view.title }));
+    return words;
+  }
+
+  /** How far a click here can be off, and the pane where one more would settle it. */
+  _doubt(pane, spot, moved) {
+    if (!this._doubtAt) this._fetchDoubt();
+    if (!this._doubtAt || spot.position === null) return { metres: 0, settles: null };
+    return this._doubtAt(this._scene, this._panes.shown, pane, spot.ground, this._heads.height(pane, moved));
+  }
+
+  async _fetchDoubt() {
+    const { doubtAt } = await import("./doubt.js");
+    if (this._doubtAt) return;
+    this._doubtAt = doubtAt;
+    const shown = this._shown;
+    this._shown = null;
+    if (shown) this.hover(shown.pane, shown.at, shown.over);
+  }
+
+  /** The pane that would settle it is framed. */
+  _point(settling) {
+    for (const { element } of this._panes.all) element.toggleAttribute("data-settles", element === settling?.element);
   }
 
   _canPlace(pane, at) {

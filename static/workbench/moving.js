@@ -11,8 +11,8 @@ const FAR = 10; // positions a step with Shift goes
 
 /** Placing people and moving them, by click and by arrow key. */
 export class Moving {
-  constructor({ scene, store, history, panes, guard, ghost, sightings, settings }) {
-    Object.assign(this, { scene, store, history, panes, guard, ghost, sightings });
+  constructor({ scene, store, history, panes, guard, ghost, sightings, settings, heads }) {
+    Object.assign(this, { scene, store, history, panes, guard, ghost, sightings, heads });
     this._held = new Held(settings);
     panes.held = this._held;
   }
@@ -29,7 +29,7 @@ export class Moving {
 
   /** @returns {boolean} whether somebody new stands there now */
   place(pane, at, event) {
-    const position = this.guard.refused(event) ? null : this._positionUnder(pane, at, event);
+    const position = this.guard.refused(event) ? null : this._positionUnder(pane, at, event, null);
     if (position === null) return false;
     const occupant = this.store.occupant(position);
     if (occupant) {
@@ -38,16 +38,17 @@ export class Moving {
     }
     this.ghost.hide();
     this.history.run(commands.place(this.store, { position }));
-    this.sightings.begin(pane, at);
+    this.sightings.begin(pane, this.heads.feet(pane, at, null));
     return true;
   }
 
   /** @returns {boolean} whether the selected person stands there now */
   moveHere(pane, at, event) {
     const person = this.guard.selected(event);
-    const position = person && this._positionUnder(pane, at, event);
+    const position = person && this._positionUnder(pane, at, event, person);
     if (!person || position === null || !this.moveTo(person, position, event)) return false;
-    this.sightings.begin(pane, at);
+    this.ghost.hide();
+    this.sightings.begin(pane, this.heads.feet(pane, at, person));
     return true;
   }
 
@@ -57,7 +58,8 @@ export class Moving {
     if (pane.view.index === null) return this.guard.say(event, gettext("The map sees from nowhere: click the feet in a camera's view"));
     const person = this.store.selected();
     if (!person) return this.place(pane, at, event);
-    if (this.sightings.add(pane, at, event, (position) => this.moveTo(person, position, event))) return;
+    const feet = this.heads.feet(pane, at, person);
+    if (this.sightings.add(pane, feet, event, (position) => this.moveTo(person, position, event))) return;
     if (this.moveHere(pane, at, event)) this.guard.say(event, gettext("Now Alt + click on the same feet in another view"));
   }
 
@@ -94,10 +96,10 @@ export class Moving {
     }
   }
 
-  _positionUnder(pane, at, event) {
-    const ground = pane.view.ground(pane.transform.toSource(at.x, at.y));
-    const { position, problem } = spotOn(this.scene, this.store, ground);
-    if (problem === "horizon") this.guard.say(event, gettext("Above the horizon there is no ground: click where the feet are"));
+  _positionUnder(pane, at, event, person) {
+    const { position, problem } = spotOn(this.scene, this.store, this.heads.ground(pane, at, person));
+    if (problem === "horizon" && this.heads.active) this.guard.say(event, gettext("No head can be here: the line of sight never comes down to it"));
+    else if (problem === "horizon") this.guard.say(event, gettext("Above the horizon there is no ground: click where the feet are"));
     if (problem === "outside") this.guard.say(event, gettext("Outside the ground area – {key} shows its border", { key: keyFor("outline") }));
     return position;
   }

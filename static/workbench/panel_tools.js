@@ -10,8 +10,8 @@ const ABOUT_PERSON = [
   ["removeMore", () => gettext("Remove")],
 ];
 
-/** Buttons under the list of people, for whoever works with the mouse: who is who, and the frame's history. */
-export function panelTools(store, perform) {
+/** Buttons under the list of people, for mouse and touch: who is who, clicks on heads, the frame's history. */
+export function panelTools(store, perform, heads) {
   const keys = new Map(keyTable().map((row) => [row.id, row]));
   const button = (id, text) =>
     element(
@@ -32,5 +32,8 @@ export function panelTools(store, perform) {
   const update = () => person.forEach((one) => (one.disabled = store.selection === null));
   store.on("selection", update);
   update();
-  return element("div", { className: "panel-tools" }, person, button("history", gettext("History")));
+  const byHead = button("heads", gettext("Heads"));
+  byHead.setAttribute("aria-pressed", "false");
+  heads.on("change", ({ on }) => byHead.setAttribute("aria-pressed", String(on)));
+  return element("div", { className: "panel-tools" }, person, byHead, button("history", gettext("History")));
 }

@@ -5,10 +5,11 @@ const FOOT = 9; // CSS pixels around a foot point that mean the foot
 const STILL = 4; // CSS pixels a pointer may wander during a click
 const AGAIN = 6; // CSS pixels: a click here again means the person behind
 const EDGE = 5; // CSS pixels around the top of the selected box that mean the top
+const LONG = 550; // ms a finger stays in one place to mean "move here"
 const TALL = 30; // CSS pixels a box must have for its top to be taken hold of
 
 /**
- * Pointer events of the panes, as intents: `place`, `select`, `moveHere`, `sight`, `hover`, `leave`, `enlarge`, and a drag of
+ * Pointer events of the panes, as intents: `place`, `select`, `moveHere` (right click, long press), `sight`, `hover`, `leave`, `enlarge`, and a drag of
  * a person (`beginDrag`, `drag`, `drop`, `cancelDrag`). Wheel and other drags change a pane's pan and zoom directly.
  */
 export class Pointer {
@@ -18,6 +19,8 @@ export class Pointer {
     this._press = null;
     this._fingers = new Fingers();
     this._lastPick = null;
+    this._over = null; // the mouse's last event over a pane
+    this._longPress = null;
     for (const pane of panes.all) this._attach(pane);
   }
 
@@ -48,6 +51,14 @@ export class Pointer {
     return person ? { person, part: "foot" } : null;
   }
 
+  /** Where the pointer is: {pane, at, event}, or null when it is over none of the views. */
+  under() {
+    const event = this._over;
+    const target = event && document.elementFromPoint(event.clientX, event.clientY);
+    const pane = this._panes.shown.find(({ element }) => element.contains(target));
+    return pane?.transform && !target.closest("button") ? { pane, at: pane.local(event), event } : null;
+  }
+
   _attach(pane) {
     const { element } = pane;
     element.addEventListener("pointerenter", () => this._panes.activate(pane));
@@ -58,7 +69,10 @@ export class Pointer {
       this._fingers.up(event);
       this._forget(pane);
     });
-    element.addEventListener("pointerleave", () => this._intents.leave());
+    element.addEventListener("pointerleave", () => {
+      this._over = null;
+      this._intents.leave();
+    });
     element.addEventListener("dblclick", (event) => event.target.closest("button") || this._intents.enlarge(pane, event));
     element.addEventListener("contextmenu", (event) => this._onMenu(pane, event));
     element.addEventListener("wheel", (event) => this._onWheel(pane, event), { passive: false });
@@ -67,13 +81,24 @@ export class Pointer {
   _onDown(pane, event) {
     if (event.target.closest("button") || !pane.transform) return;
     this._panes.activate(pane);
+    this._over = event;
+    clearTimeout(this._longPress);
     if (event.button === 2) return;
     if (this._fingers.down(pane, event)) return this._forget(pane); // a second finger: nothing is clicked, the picture is pinched
     this._press = { pane, x: event.clientX, y: event.clientY, last: event, dragged: false, grip: this._gripOf(pane, event), holding: false };
     pane.element.setPointerCapture(event.pointerId);
+    if (event.pointerType === "touch") this._longPress = setTimeout(() => this._onLongPress(pane, event), LONG);
+  }
+
+  /** A finger has no right button. Some systems say so themselves with a menu event, others don't: it is timed here. */
+  _onLongPress(pane, event) {
+    if (!this._press || this._press.dragged) return;
+    this._forget(pane);
+    this._intents.moveHere(pane, pane.local(event), event);
   }
 
   _onMove(pane, event) {
+    this._over = event;
     if (this._fingers.move(pane, event)) return;
     const press = this._press;
     if (!press) return this._hover(pane, event);
@@ -87,6 +112,7 @@ export class Pointer {
 
   _onUp(pane, event) {
     this._fingers.up(event);
+    clearTimeout(this._longPress);
     const press = this._press;
     this._press = null;
     pane.element.classList.remove("dragging");
@@ -97,7 +123,7 @@ export class Pointer {
 
   /** Fingers pan: on glass nobody should be moved by accident. Shift and the other buttons mean the picture, too. */
   _gripOf(pane, event) {
-    if (event.button !== 0 || event.pointerType === "touch" || event.shiftKey || otherView(event)) return null;
+    if (event.button !== 0 || event.pointerType === "touch" || this._intents.pointsThrough || event.shiftKey || otherView(event)) return null;
     return this.grip(pane, pane.local(event));
   }
 
@@ -109,6 +135,7 @@ export class Pointer {
   }
 
   _forget(pane) {
+    clearTimeout(this._longPress);
     this._press = null;
     pane.element.classList.remove("dragging");
     this._intents.cancelDrag();
@@ -117,7 +144,7 @@ export class Pointer {
   _hover(pane, event) {
     if (!pane.transform) return;
     const at = pane.local(event);
-    const grip = event.shiftKey ? null : this.grip(pane, at);
+    const grip = event.shiftKey || this._intents.pointsThrough ? null : this.grip(pane, at);
     pane.element.dataset.grip = grip?.part ?? "";
     this._intents.hover(pane, at, grip?.person ?? null);
   }
@@ -125,7 +152,7 @@ export class Pointer {
   _click(pane, event) {
     const at = pane.local(event);
     if (otherView(event)) return this._intents.sight(pane, at, event);
-    const found = event.shiftKey ? [] : this.pick(pane, at);
+    const found = event.shiftKey || this._intents.pointsThrough ? [] : this.pick(pane, at);
     if (!found.length) {
       this._lastPick = null;
       return this._intents.place(pane, at, event);
@@ -144,6 +171,7 @@ export class Pointer {
 
   _onMenu(pane, event) {
     event.preventDefault();
+    if (event.pointerType === "touch") return; // a long press, which is timed
     const controlClick = event.ctrlKey && event.button === 0; // how a Mac asks for a menu: it is a click of ours
     if (pane.transform && !controlClick && !event.target.closest("button")) this._intents.moveHere(pane, pane.local(event), event);
   }

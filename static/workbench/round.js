@@ -29,7 +29,7 @@ export class Round {
       validateAll: () => actions.validateAll() && this.on && this._advance(),
       remove: () => actions.remove() && this.on && this._advance(),
       nextFrame: () => this._nextFrame(),
-      escape: () => (this.on && !actions.dragging.active ? this._leave() : actions.escape()),
+      escape: () => (this.on && !actions.dragging.active && !actions.heads.active ? this._leave() : actions.escape()),
     };
   }
 

@@ -62,9 +62,9 @@ export class Scene {
     return project(this.cameras[index], ground.x, ground.y, z);
   }
 
-  /** Image pixel → ground point in metres, or null above the horizon. */
-  toGround(index, pixel) {
-    return backProject(this.cameras[index], pixel.x, pixel.y);
+  /** Image pixel → the point in metres it shows at height `z`, or null above the horizon. */
+  toGround(index, pixel, z = 0) {
+    return backProject(this.cameras[index], pixel.x, pixel.y, z);
   }
 
   /** The position nearest to a ground point, or null outside the grid. */

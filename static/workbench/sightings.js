@@ -27,20 +27,21 @@ export class Sightings {
   }
 
   /** A first click has put the selected person where it is. */
-  begin(pane, at) {
+  begin(pane, pixel) {
     this._clicks = new Map();
-    this._remember(pane, at);
+    this._remember(pane, pixel);
     this._show(null);
   }
 
   /**
    * One more click on the feet of the selected person, if there was one in another view before.
+   * @param {{x, y}} pixel of the view's picture
    * @param {(position: number) => boolean} move puts the person there if possible
    * @returns {boolean} false: this is the first click
    */
-  add(pane, at, event, move) {
+  add(pane, pixel, event, move) {
     if (!this._valid() || [...this._clicks.keys()].every((index) => index === pane.view.index)) return false;
-    const clicks = new Map(this._clicks).set(pane.view.index, pane.transform.toSource(at.x, at.y));
+    const clicks = new Map(this._clicks).set(pane.view.index, pixel);
     const found = this._meeting(clicks);
     const position = found && this._scene.positionAt(found);
     if (position === null) {
@@ -48,15 +49,15 @@ export class Sightings {
       return true;
     }
     if (!move(position)) return true;
-    this._remember(pane, at);
+    this._remember(pane, pixel);
     this._show(found.clicks);
     this._guard.say(event, this._words(found.clicks));
     return true;
   }
 
-  _remember(pane, at) {
+  _remember(pane, pixel) {
     if (pane.view.index === null) this._clicks = new Map();
-    else this._clicks.set(pane.view.index, pane.transform.toSource(at.x, at.y));
+    else this._clicks.set(pane.view.index, pixel);
     this._annotation = this._store.selected() ?? null;
     this._frame = this._store.current;
   }

@@ -63,7 +63,7 @@ export function buildWorkbench(root, session, { mode, home }) {
   const filmstrip = new Filmstrip({ ...session, walk, panes, settings });
   const timeline = new Timeline({ ...session, walk, playback, perform });
   root.replaceChildren(bar.element, stage, filmstrip.element, timeline.element, notices.element);
-  new Pointer(panes, actions);
+  actions.pointer = new Pointer(panes, actions);
   connectKeyboard(actions, bar, perform, settings);
   const layout = new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
   chooseViews(root, actions, { panes, layout, settings, notices });
@@ -72,7 +72,7 @@ export function buildWorkbench(root, session, { mode, home }) {
     const frameHistory = new FrameHistory({ ...session, panes, notices, guard: actions.guard });
     actions.use(frameHistory.table());
     const list = warn(session, { settings, panes, notices, walk, actions, identity });
-    panel.element.append(panelTools(store, perform), list, frameHistory.element, new Hints({ store, panes, settings }).element);
+    panel.element.append(panelTools(store, perform, actions.heads), list, frameHistory.element, new Hints({ store, panes, settings }).element);
   }
   watch(session, panes, notices);
   walk.carryInto(store.current);

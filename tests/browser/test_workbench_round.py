@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import pytest
 from playwright.sync_api import expect
@@ -102,3 +103,18 @@ def test_escape_ends_the_round(bench: Callable[..., Bench]) -> None:
     assert not zoomed(opened)
     opened.press("Escape", "f")
     assert not zoomed(opened)
+
+
+def test_f_goes_to_the_nearest_yellow_person_and_misses_nobody(bench: Callable[..., Bench]) -> None:
+    opened = yellow_frame(bench, people=6)
+    opened.press("Escape")
+    visited = []
+    for _ in range(6):
+        opened.press("f")
+        visited.append(int(opened.selected() or 0))
+    places = {row.person: row.position for row in opened.stored(1)}
+    left = set(places) - {visited[0]}
+    for here, there in pairwise(visited):
+        assert there == min(left, key=lambda one: metres_apart(places[here], places[one]))
+        left.discard(there)
+    assert not left

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Browser, CDPSession, Page
 
-from tests.browser.bench import Bench, well_seen
+from tests.browser.bench import Bench, best_view, metres_apart, well_seen
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -79,3 +79,37 @@ def test_one_finger_moves_the_zoomed_picture_and_nobody_in_it(bench: Callable[..
 
 
 LOOK = """() => document.querySelector('[data-view="camera-0"] .pane-picture').toDataURL()"""
+
+
+def test_a_long_press_moves_the_selected_person_there(bench: Callable[..., Bench]) -> None:
+    opened = bench(people=1).open()
+    before = opened.stored()[0].position
+    view = best_view(before)
+    opened.page.touchscreen.tap(*opened.place_of(view, before))
+    x, y = opened.place_of(view, before)
+    hold(opened, (x + 40, y), 900)
+    after = opened.stored()[0]
+    assert metres_apart(after.position, before) > 0.05
+    assert opened.rows() == ["1"]
+
+
+def test_a_finger_that_moves_on_is_no_long_press(bench: Callable[..., Bench]) -> None:
+    opened = bench(people=1).open()
+    before = opened.stored()[0].position
+    view = best_view(before)
+    opened.page.touchscreen.tap(*opened.place_of(view, before))
+    x, y = opened.place_of(view, before)
+    hold(opened, (x + 40, y), 900, wander=30)
+    assert opened.stored()[0].position == before
+
+
+def hold(opened: Bench, place: Place, milliseconds: int, wander: float = 0) -> None:
+    """A finger on one place for a while; `wander` pixels on after it was put down."""
+    session = opened.page.context.new_cdp_session(opened.page)
+    send = session.send
+    send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [{"x": place[0], "y": place[1]}]})
+    if wander:
+        moved = [{"x": place[0] + wander, "y": place[1]}]
+        send("Input.dispatchTouchEvent", {"type": "touchMove", "touchPoints": moved})
+    opened.page.wait_for_timeout(milliseconds)
+    send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})

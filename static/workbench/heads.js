@@ -1,0 +1,41 @@
+import { Emitter } from "./emitter.js";
+import { keyFor } from "./keys.js";
+import { gettext } from "./messages.js";
+
+/**
+ * Clicks that mean the top of a head, for people whose feet nobody sees. The place is where the ray through the
+ * pixel is as high above the ground as the person is tall. Emits `change` {on}.
+ */
+export class Heads extends Emitter {
+  constructor({ scene, notices }) {
+    super();
+    Object.assign(this, { _scene: scene, _notices: notices, active: false });
+  }
+
+  toggle(on = !this.active) {
+    if (on === this.active) return;
+    this.active = on;
+    this.emit("change", { on });
+    const words = on
+      ? gettext("Clicks mean the top of the head now; {key} means the feet again", { key: keyFor("heads") })
+      : gettext("Clicks mean the feet again");
+    this._notices.say(words);
+  }
+
+  /** Metres above the ground of what is clicked on. @param {object|null} person null: somebody new */
+  height(pane, person) {
+    if (!this.active || pane.view.index === null) return 0;
+    return person ? this._scene.cylinderOf(person).height : this._scene.cylinder.height;
+  }
+
+  /** The ground point under what is clicked on, or null. `at` in CSS pixels of the pane. */
+  ground(pane, at, person) {
+    return pane.view.ground(pane.transform.toSource(at.x, at.y), this.height(pane, person));
+  }
+
+  /** The same click as if the feet had been clicked on: a pixel of the view's picture, or null. */
+  feet(pane, at, person) {
+    const ground = this.active && this.ground(pane, at, person);
+    return ground ? pane.view.point(ground) : pane.transform.toSource(at.x, at.y);
+  }
+}
