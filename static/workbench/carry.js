@@ -1,6 +1,5 @@
 /** Which people a frame starts with. Pure: maps, seconds and a grid in, annotations out. */
 import { CARRIED, annotation } from "./annotation.js";
-import { insideBy } from "./spot.js";
 
 // Fitted to the first 100 of 200 frames of real people, tried on the others. Left to be pressed there: 21.1 positions a
 // person after copying, 10.0 after the last step alone, 8.4 after this.
@@ -9,7 +8,6 @@ const OLDER = 0.8; // weight of a step against the one after it; many even out h
 const STANDS = 0.2; // m/s; slower than that nobody walks, the clicks differ
 const FASTEST = 3; // m/s; faster than that nobody walked, somebody was mixed up
 const LOOK_BACK = 4; // frames a movement is read from
-const GONE = 0.2; // metres outside; of real people expected so far out nobody was there any more
 
 /** Put there by the program, and not looked at since. */
 export function isGuess({ state, origin }) {
@@ -22,17 +20,14 @@ export function isGuess({ state, origin }) {
  * @param {Grid} grid
  * @param {number} time seconds, of the frame to fill
  * @param {{time: number, people: Map}[]} sources frames on one side of it, nearest first
- * @param {{except: Map, origin: string, leaving: boolean}} options `except`: who is there already; `leaving`: who
- *   walks out of the grid is put on its border instead of being left out
+ * @param {{except: Map, origin: string}} options `except`: who is there already
  */
-export function predictPeople(grid, time, sources, { except = new Map(), origin = "carried", leaving = true } = {}) {
+export function predictPeople(grid, time, sources, { except = new Map(), origin = "carried" } = {}) {
   const taken = new Set([...except.values()].map(({ position }) => position));
   return [...(sources[0]?.people.values() ?? [])]
     .filter(({ person }) => !except.has(person))
-    .map((one) => ({ one, ground: expected(grid, time, sources, one.person) }))
-    .filter(({ ground }) => leaving || insideBy(grid, ground) > -GONE)
-    .map(({ one, ground }) => {
-      const position = freePosition(grid, ground, taken);
+    .map((one) => {
+      const position = freePosition(grid, expected(grid, time, sources, one.person), taken);
       taken.add(position);
       return annotation({ ...one, position, state: CARRIED, origin });
     });

@@ -99,7 +99,7 @@ export class Walk {
     const sources = nearestSide(store, scene, number);
     if (!sources.length || (here.size && sources[0].outside)) return;
     const except = new Map([...here].filter(([person]) => !sources[0].people.has(person)));
-    const expected = predictPeople(scene.grid, scene.seconds(number), sources, { except, leaving: false });
+    const expected = predictPeople(scene.grid, scene.seconds(number), sources, { except });
     const brought = sources[0].outside
       ? withFreeNumbers(store, expected)
       : expected.map((one) => between(store, scene, one.person, number) ?? one).filter((one) => this._isNews(number, one));

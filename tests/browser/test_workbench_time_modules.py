@@ -90,17 +90,6 @@ def test_going_backwards_the_movement_is_continued_backwards(module_page: Page) 
     assert places == {"1": [24, 30]}
 
 
-def test_who_walks_out_of_the_ground_area_is_not_carried_along(module_page: Page) -> None:
-    sources = "[[one(1, [99, 30]), one(2, [50, 30])], [one(1, [95, 30]), one(2, [50, 30])]]"
-    assert predicted(module_page, sources, "{leaving: false}") == {"2": [50, 30]}
-    assert predicted(module_page, sources) == {"1": [99, 30], "2": [50, 30]}
-
-
-def test_who_walks_along_the_border_is_carried_along(module_page: Page) -> None:
-    sources = "[[one(1, [99, 30])], [one(1, [98, 26])]]"
-    assert predicted(module_page, sources, "{leaving: false}") == {"1": [99, 34]}
-
-
 def test_yellow_people_come_nearest_first_and_keep_their_turn(module_page: Page) -> None:
     turns = run(
         module_page,
