@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from io import StringIO
@@ -71,6 +72,53 @@ def test_detections_that_found_nobody_are_scored(tmp_path: Path, files: tuple[st
     assert (result["moda"], result["recall"], result["modp"], result["precision"]) == (0.0, 0.0, None, None)
 
 
+@pytest.mark.parametrize("nobody", ["", "\n", "# frame column row\n\n"])
+def test_what_is_not_defined_without_truth_is_null(
+    tmp_path: Path, files: tuple[str, str], nobody: str
+) -> None:
+    result = evaluated(written(tmp_path, "none.txt", nobody), files[1], "--step", "0.025")
+    assert (result["moda"], result["modp"], result["precision"], result["recall"]) == (None, None, 0.0, None)
+    assert (result["truth"], result["extra"]) == (0, 3)
+
+
+@pytest.mark.parametrize("identities", [[], ["--identities"]])
+def test_nobody_against_nobody_is_valid_json(tmp_path: Path, identities: list[str]) -> None:
+    none = written(tmp_path, "none.txt", "")
+    output = StringIO()
+    call_command("evaluate", none, none, "--step", "0.025", "--json", "--curve", *identities, stdout=output)
+
+    def refuse(word: str) -> None:
+        raise AssertionError(f"{word} is no JSON")
+
+    result = json.loads(output.getvalue(), parse_constant=refuse)
+    assert (result["moda"], result["frames"]) == (None, 0)
+
+
+def test_more_mistakes_than_people_make_moda_negative(tmp_path: Path) -> None:
+    truth = written(tmp_path, "gt.txt", "0 0 0\n")
+    found = written(tmp_path, "found.txt", "0 100 0\n0 200 0\n5 0 0\n")
+    assert evaluated(truth, found, "--step", "0.025")["moda"] == -3.0
+
+
+def test_a_frame_that_one_file_lacks_counts(tmp_path: Path) -> None:
+    truth = written(tmp_path, "gt.txt", "0 0 0\n5 0 0\n")
+    found = written(tmp_path, "found.txt", "0 0 0\n10 0 0\n")
+    result = evaluated(truth, found, "--step", "0.025")
+    assert (result["frames"], result["matched"], result["missed"], result["extra"]) == (3, 1, 1, 1)
+
+
+def test_the_curve_over_the_radius_is_printed_when_asked_for(files: tuple[str, str]) -> None:
+    curve = evaluated(*files, "--step", "0.025", "--curve")["curve"]
+    assert [(each["radius"], each["recall"]) for each in curve[4:7]] == [
+        (0.25, pytest.approx(1 / 3)),
+        (0.3, pytest.approx(1 / 3)),  # nearer than the radius, not as near
+        (0.35, pytest.approx(2 / 3)),
+    ]
+    output = StringIO()
+    call_command("evaluate", *files, "--step", "0.025", "--curve", stdout=output)
+    assert len(output.getvalue().splitlines()) == 11 + 2 + 20
+
+
 def test_identities_are_compared_when_asked_for(tmp_path: Path) -> None:
     truth = written(tmp_path, "gt.txt", "0 1 1 1\n5 1 1 1\n")
     found = written(tmp_path, "found.txt", "0 1 1 8\n5 1 1 9\n")
@@ -108,6 +156,26 @@ def test_wrong_lines_end_the_process_with_code_1(tmp_path: Path) -> None:
     )
     assert (process.returncode, process.stdout) == (1, "")
     assert f"{bad}: line 1: 2 values instead of 3" in process.stderr
+
+
+@pytest.mark.parametrize(
+    "variables",
+    [
+        {},
+        {"DEBUG": "false"},
+        {"DEBUG": "true"},
+        {"DATA_DIR": "/none", "DATABASE_URL": "postgres://u:p@none/x"},
+    ],
+)
+def test_neither_a_key_nor_a_database_is_needed(files: tuple[str, str], variables: dict[str, str]) -> None:
+    process = subprocess.run(
+        [sys.executable, str(MANAGE), "evaluate", *files, "--step", "0.025", "--json"],
+        capture_output=True,
+        text=True,
+        env={"PATH": os.environ["PATH"], **variables},
+    )
+    assert process.returncode == 0, process.stderr
+    assert json.loads(process.stdout)["matched"] == 2
 
 
 def test_the_published_ground_truth_agrees_with_itself(shared_data: Path) -> None:

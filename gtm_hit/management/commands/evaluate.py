@@ -1,19 +1,17 @@
 from __future__ import annotations
 
 import json
-import math
 from argparse import ArgumentParser
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from django.core.management.base import BaseCommand, CommandError
 
-from gtm_hit.formats import frame_column_row
 from gtm_hit.formats.problems import FormatError
-from gtm_hit.metrics import detection
-from gtm_hit.metrics.annotations import Annotations
+from gtm_hit.metrics.annotations import MetricsError
 from gtm_hit.metrics.matching import RADIUS
+from gtm_hit.ops.quality.text_files import SCORES, Question, evaluate
 
 
 class Command(BaseCommand):
@@ -37,80 +35,30 @@ class Command(BaseCommand):
             action="store_true",
             help="lines are `frame column row person`; compare the identities as well",
         )
+        parser.add_argument("--curve", action="store_true", help="add the scores at radii from 5 cm to 1 m")
 
     def handle(self, *args: Any, **options: Any) -> None:
-        for name in ("step", "radius"):
-            if not (math.isfinite(options[name]) and options[name] > 0):
-                raise CommandError(f"--{name} must be a positive number of metres, not {options[name]}")
-        truth, found = _read_both(options)
-        result = _scores(truth, found, options["radius"], options["identities"])
-        if options["json"]:
-            self.stdout.write(json.dumps({name: _plain(value) for name, value in result.items()}))
-        else:
-            self.stdout.write("\n".join(f"{name:<14} {_shown(value)}" for name, value in result.items()))
-
-
-def _read_both(options: dict[str, Any]) -> tuple[Annotations, Annotations]:
-    """Both files, or the problems of both: whoever repairs a file wants to see all of them at once."""
-    problems: list[str] = []
-    sides = []
-    for side in ("truth", "found"):
+        names = ("truth", "found", "step", "radius", "identities", "curve")
         try:
-            lines = frame_column_row.read(
-                options[side], persons=options["identities"], may_be_empty=side == "found"
-            )
+            result = evaluate(Question(**{name: options[name] for name in names}))
+        except MetricsError as error:
+            raise CommandError(f"--{error}") from error
         except FormatError as error:
-            problems += [str(problem) for problem in error.problems]
-            continue
-        xy = np.column_stack((lines.columns, lines.rows)) * options["step"]
-        sides.append(Annotations(lines.frames, xy, lines.persons))
-    if problems:
-        raise CommandError("\n".join(["nothing was compared:", *problems]))
-    return sides[0], sides[1]
+            lines = ["nothing was compared:", *map(str, error.problems)]
+            raise CommandError("\n".join(lines)) from error
+        self.stdout.write(json.dumps(result) if options["json"] else "\n".join(_lines(result)))
 
 
-def _scores(
-    truth: Annotations, found: Annotations, radius: float, identities: bool
-) -> dict[str, float | int]:
-    score = detection.evaluate(truth, found, radius)
-    result: dict[str, float | int] = {
-        name: getattr(score, name)
-        for name in (
-            *("moda", "modp", "precision", "recall", "radius"),
-            *("frames", "truth", "found", "matched", "missed", "extra"),
-        )
-    }
-    return result | _identity_scores(truth, found, radius) if identities else result
+def _lines(result: dict[str, Any]) -> Iterator[str]:
+    curve = result.pop("curve", [])
+    yield from (f"{name:<14} {_shown(value)}" for name, value in result.items())
+    if curve:
+        yield ""
+        yield "".join(f"{name:>12}" for name in SCORES)
+        yield from ("".join(f"{_shown(each[name]):>12}" for name in SCORES) for each in curve)
 
 
-def _identity_scores(truth: Annotations, found: Annotations, radius: float) -> dict[str, float | int]:
-    # pandas, behind motmetrics, takes longer to import than the rest takes to run.
-    from gtm_hit.metrics import tracking
-
-    score = tracking.evaluate(truth, found, radius).score
-    return {
-        "mota": score.mota,
-        "motp": score.motp,
-        "mean_distance": score.mean_distance,
-        "idf1": score.idf1,
-        "id_precision": score.id_precision,
-        "id_recall": score.id_recall,
-        "switches": score.switches,
-        "truth_persons": score.truth_persons,
-        "found_persons": score.found_persons,
-        "hota": score.hota.hota,
-        "deta": score.hota.detection,
-        "assa": score.hota.association,
-        "loca": score.hota.localisation,
-    }
-
-
-def _plain(value: float | int) -> float | int | None:
-    """JSON has no NaN; a score that is not defined is null."""
-    return None if math.isnan(value) else value
-
-
-def _shown(value: float | int) -> str:
-    if isinstance(value, int):
-        return str(value)
-    return "not defined" if math.isnan(value) else f"{value:.4f}"
+def _shown(value: float | int | None) -> str:
+    if value is None:
+        return "not defined"
+    return str(value) if isinstance(value, int) else f"{value:.4f}"
