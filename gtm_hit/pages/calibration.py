@@ -1,12 +1,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from django import forms
-from django.conf import settings
 from django.contrib import messages
 from django.core.files.uploadedfile import UploadedFile
 from django.http import Http404, HttpRequest, HttpResponse
@@ -16,20 +13,17 @@ from django.utils.translation import gettext as _
 from django.utils.translation import gettext_lazy
 from django.views.decorators.http import require_http_methods, require_POST, require_safe
 
-from gtm_hit.formats.files import write_bytes
 from gtm_hit.formats.problems import FormatError
-from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Dataset, Job
-from gtm_hit.ops import overview, uploads
+from gtm_hit.ops import overview
 from gtm_hit.ops.calibration import job as calibration_job
-from gtm_hit.ops.calibration.reading import read_replacement
+from gtm_hit.ops.calibration.reading import MOST_BYTES, read_upload
 from gtm_hit.ops.calibration.replacing import ReplacementError
 from gtm_hit.ops.importing.calibrations import UNITS
 from gtm_hit.pages.access import StaffRequest, staff_only
 from gtm_hit.pages.datasets import summary_or_404
 from gtm_hit.pages.uploads import takes_uploads
 
-MOST_BYTES = 10_000_000
 ROWS_SHOWN = 20
 
 
@@ -68,7 +62,7 @@ def calibration(request: StaffRequest, slug: str) -> HttpResponse:
     form = CalibrationForm(request.POST or None, request.FILES or None)
     if request.method == "POST" and form.is_valid():
         try:
-            cameras = _read(dataset, form.cleaned_data["file"], form.cleaned_data["tvec_unit"])
+            cameras = read_upload(dataset, form.cleaned_data["file"], form.cleaned_data["tvec_unit"])
         except FormatError as error:
             for problem in error.problems:
                 form.add_error("file", str(problem))
@@ -122,25 +116,6 @@ def confirm(request: StaffRequest, slug: str, pk: int) -> HttpResponse:
 
 def _jobs() -> Any:
     return overview.jobs().filter(kind=Job.Kind.REPLACE_CALIBRATION)
-
-
-def _read(dataset: Dataset, file: UploadedFile, unit: str) -> list[Camera]:
-    """Cameras of an uploaded file; raises FormatError whose paths are seen from the upload."""
-    settings.UPLOADS_ROOT.mkdir(parents=True, exist_ok=True)
-    with TemporaryDirectory(prefix=".calibration-", dir=settings.UPLOADS_ROOT) as name:
-        folder = Path(name)
-        try:
-            if (file.name or "").lower().endswith(".json"):
-                path = folder / "cameras.json"
-                write_bytes(path, file.read())
-            else:
-                archive, path = folder / "calibration.zip", folder / "calibration"
-                write_bytes(archive, file.read())
-                uploads.unpack(archive, path, lambda _done, _total: None)
-                path = uploads.dataset_folder(path)
-            return read_replacement(dataset, path, unit)
-        except FormatError as error:
-            raise error.relative_to(folder) from error
 
 
 def _views(dataset: Dataset, seen: dict[str, Any]) -> list[View]:

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from django.conf import settings
+from django.core.files.uploadedfile import UploadedFile
 
 from gtm_hit.formats.calibration_files import CAMERAS_JSON, CalibrationFiles, find_calibrations
 from gtm_hit.formats.dataset_folder import DatasetFolder
-from gtm_hit.formats.problems import ProblemList
+from gtm_hit.formats.files import write_bytes
+from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Dataset
+from gtm_hit.ops import uploads
 from gtm_hit.ops.importing.calibrations import tell_wrong_unit, views_of
+
+MOST_BYTES = 10_000_000  # of an upload
 
 
 def read_replacement(dataset: Dataset, path: Path, unit: str = "m") -> list[Camera]:
@@ -38,6 +46,28 @@ def read_replacement(dataset: Dataset, path: Path, unit: str = "m") -> list[Came
         tell_wrong_unit(cameras, dataset.grid, unit, problems)
     problems.raise_if_any()
     return cameras
+
+
+def read_upload(dataset: Dataset, file: UploadedFile, unit: str = "m") -> list[Camera]:
+    """The cameras of an uploaded `cameras.json`, or zip of a folder; paths in a FormatError seen from it."""
+    settings.UPLOADS_ROOT.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory(prefix=".calibration-", dir=settings.UPLOADS_ROOT) as name:
+        folder = Path(name)
+        try:
+            return read_replacement(dataset, _unpacked(folder, file), unit)
+        except FormatError as error:
+            raise error.relative_to(folder) from error
+
+
+def _unpacked(folder: Path, file: UploadedFile) -> Path:
+    if (file.name or "").lower().endswith(".json"):
+        path = folder / CAMERAS_JSON
+        write_bytes(path, file.read())
+        return path
+    archive, path = folder / "calibration.zip", folder / "calibration"
+    write_bytes(archive, file.read())
+    uploads.unpack(archive, path, lambda _done, _total: None)
+    return uploads.dataset_folder(path)
 
 
 def _files(path: Path, names: list[str], problems: ProblemList) -> CalibrationFiles:

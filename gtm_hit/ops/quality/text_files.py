@@ -63,7 +63,7 @@ def _read_both(asked: Question) -> tuple[Annotations, Annotations]:
         except FormatError as error:
             problems += error.problems
             continue
-        xy = np.column_stack((lines.columns, lines.rows)) * asked.step
+        xy = np.column_stack((lines.columns, lines.rows)).astype(np.float64) * asked.step
         sides.append(Annotations(lines.frames, xy, lines.persons))
     if problems:
         raise FormatError(problems)
