@@ -93,7 +93,7 @@ class IsStaff(BasePermission):
 class StaffMay(IsStaff):
     """Staff at the browser may do everything, their scripts only what their tokens are for.
 
-    Reading takes the scope `read`, anything else the view's `write_scope`.
+    Reading takes the view's `read_scope`, anything else its `write_scope`.
     """
 
     def has_permission(self, request: Request, view: APIView) -> bool:
@@ -101,7 +101,8 @@ class StaffMay(IsStaff):
             return False
         if isinstance(request.auth, ApiToken):
             reads = request.method in SAFE_METHODS
-            needed = ApiToken.Scope.READ if reads else getattr(view, "write_scope", None)
+            usual = ApiToken.Scope.READ if reads else None
+            needed = getattr(view, "read_scope" if reads else "write_scope", usual)
             if needed not in request.auth.scopes:
                 raise PermissionDenied(_("The token lacks the scope %(scope)s.") % {"scope": needed})
         return True

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from django.db.models import Prefetch, QuerySet
-from django.http import Http404
 from drf_spectacular.utils import extend_schema
 from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
@@ -20,16 +19,11 @@ from gtm_hit.api.staff import (
     answers,
     asked,
     dataset_or_404,
-    invalid,
-    layer_named,
     layer_or_404,
 )
 from gtm_hit.models import Camera, Dataset, Frame, Image, Layer
 from gtm_hit.ops import overview
 from gtm_hit.ops.placed import placed
-from gtm_hit.ops.quality import comparing, statistics
-from gtm_hit.ops.quality.layer_rows import QualityError
-from gtm_hit.ops.quality.statistics_numbers import as_numbers
 
 
 class Datasets(StaffView, ListAPIView[Dataset]):
@@ -142,39 +136,3 @@ class Annotations(StaffView):
         query = request.query_params.copy()
         query["from"] = str(following)
         return request.build_absolute_uri(f"{request.path}?{query.urlencode()}")
-
-
-class Statistics(StaffView):
-    @extend_schema(
-        operation_id="statistics",
-        summary="What a paper prints of a layer",
-        description="Metres and seconds; what is not defined is null.",
-        responses=answers(200, dict, READS),
-    )
-    def get(self, request: Request, slug: str, name: str) -> Response:
-        layer = layer_or_404(slug, name)
-        try:
-            found = as_numbers(statistics.layer_statistics(layer), statistics.ground_coverage(layer.dataset))
-        except QualityError:
-            raise Http404 from None
-        return Response(found)
-
-
-class Evaluation(StaffView):
-    @extend_schema(
-        operation_id="evaluation",
-        summary="One layer measured by another",
-        description=f"Of the first {comparing.MOST_FRAMES} frames. Scores as fractions; undefined: null.",
-        parameters=[shapes.EvaluationQuery],
-        responses=answers(200, dict, ASKS),
-    )
-    def get(self, request: Request, slug: str) -> Response:
-        dataset = dataset_or_404(slug)
-        wanted = asked(request, shapes.EvaluationQuery)
-        truth, found = (layer_named(dataset, wanted[side], side) for side in ("truth", "found"))
-        scope = comparing.Scope(wanted["scope"])
-        try:
-            result = comparing.compare(truth, found, wanted["radius"], scope, most=comparing.MOST_FRAMES)
-        except QualityError as error:
-            raise invalid("", error) from error
-        return Response(comparing.as_numbers(result))

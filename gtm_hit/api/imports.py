@@ -9,14 +9,13 @@ from typing import Any
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiExample, extend_schema
 from rest_framework import exceptions, serializers
-from rest_framework.parsers import MultiPartParser
 from rest_framework.request import Request
 from rest_framework.response import Response
 
 from gtm_hit.api import shapes
 from gtm_hit.api.frames import valid
 from gtm_hit.api.jobs import started
-from gtm_hit.api.parsing import TooLarge
+from gtm_hit.api.parsing import BoundedMultiPartParser
 from gtm_hit.api.serializers import LARGEST, StrictBooleanField
 from gtm_hit.api.staff import READS, WRITES, StaffView, answers, caller, dataset_or_404, invalid
 from gtm_hit.formats.problems import FormatError, ProblemList
@@ -30,7 +29,6 @@ from gtm_hit.ops.annotation_import.reading import READERS
 from gtm_hit.ops.importing.calibrations import UNITS
 from gtm_hit.ops.importing.options import PRESETS, ImportOptions, scene
 
-FORM_BYTES = 1_000_000  # around the archive, generously
 WHOLE: dict[str, Any] = {"min_value": 1, "max_value": LARGEST, "required": False}
 
 
@@ -62,7 +60,9 @@ class SceneValuesSerializer(serializers.Serializer[Any]):
     frame_step = serializers.IntegerField(**WHOLE)
 
 
-class ImportSerializer(serializers.Serializer[Any]):
+class SceneSerializer(serializers.Serializer[Any]):
+    """What every import of a dataset is told besides its files."""
+
     source = serializers.CharField(  # type: ignore[assignment]
         max_length=300, help_text="a key from /sources/ or /uploads/"
     )
@@ -71,6 +71,9 @@ class ImportSerializer(serializers.Serializer[Any]):
     preset = serializers.ChoiceField(choices=sorted(PRESETS), allow_null=True, default=None)
     tvec_unit = serializers.ChoiceField(choices=list(UNITS), allow_null=True, default=None)
     values = SceneValuesSerializer(default=dict)
+
+
+class ImportSerializer(SceneSerializer):
     layer = serializers.CharField(max_length=80, default="imported", validators=[name_validator])
     hidden_layer = StrictBooleanField(default=False)
     undistort = StrictBooleanField(default=False)
@@ -104,6 +107,18 @@ def refused(place: str, error: FormatError) -> exceptions.ValidationError:
     return exceptions.ValidationError({place: [str(problem) for problem in error.problems]})
 
 
+def refuse_impossible(options: dict[str, Any]) -> None:
+    """`options` are fields of ImportOptions, but for the folder: what they contradict is found at once."""
+    existing = Dataset.objects.filter(slug=options["slug"]).first()
+    problems = ProblemList("")
+    try:
+        scene(ImportOptions(folder=Path(), **options), existing, problems)
+        problems.raise_if_any()
+    except FormatError as error:
+        reasons = [problem.reason for problem in error.problems]
+        raise exceptions.ValidationError({"values": reasons}) from error
+
+
 class Sources(StaffView):
     @extend_schema(
         operation_id="sources",
@@ -114,19 +129,13 @@ class Sources(StaffView):
         return Response(shapes.SourcesSerializer({"results": uploads.sources()}).data)
 
 
-class BoundedMultiPartParser(MultiPartParser):
-    """Looks at the length before it takes the body in."""
-
-    def parse(self, stream: Any, media_type: Any = None, parser_context: Any = None) -> Any:
-        length = int(parser_context["request"].META.get("CONTENT_LENGTH") or 0)
-        if length > uploads.most_bytes() + FORM_BYTES:
-            size = uploads.most_bytes() // uploads.MEGABYTE
-            raise TooLarge(_("The file is larger than %(size)d MB.") % {"size": size})
-        return super().parse(stream, media_type, parser_context)
+class ArchiveParser(BoundedMultiPartParser):
+    def most_bytes(self) -> int:
+        return uploads.most_bytes()
 
 
 class Uploads(StaffView):
-    parser_classes = [BoundedMultiPartParser]
+    parser_classes = [ArchiveParser]
     write_scope = ApiToken.Scope.IMPORT
 
     @extend_schema(
@@ -166,13 +175,7 @@ class Imports(StaffView):
         options = valid(ImportSerializer(data=request.data))
         source = source_named(options.pop("source"))
         options["values"] = dict(options["values"])
-        problems = ProblemList("")
-        try:
-            scene(ImportOptions(folder=Path(), **options), existing(options["slug"]), problems)
-            problems.raise_if_any()
-        except FormatError as error:
-            reasons = [problem.reason for problem in error.problems]
-            raise exceptions.ValidationError({"values": reasons}) from error
+        refuse_impossible(options)
         return started(import_jobs.start_import(source, options, caller(request)))
 
 
@@ -204,7 +207,3 @@ class AnnotationImports(StaffView):
         except annotation_import.AnnotationImportError as error:
             raise invalid("layer", error) from error
         return started(job)
-
-
-def existing(slug: str) -> Dataset | None:
-    return Dataset.objects.filter(slug=slug).first()

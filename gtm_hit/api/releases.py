@@ -7,7 +7,7 @@ from typing import Any
 from django.db.models import QuerySet
 from django.http import FileResponse, Http404
 from drf_spectacular.types import OpenApiTypes
-from drf_spectacular.utils import OpenApiExample, extend_schema
+from drf_spectacular.utils import OpenApiExample, OpenApiParameter, extend_schema
 from rest_framework import serializers
 from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
@@ -130,6 +130,24 @@ class DownloadRelease(Download):
         if not archive.is_file():
             raise Http404
         return FileResponse(archive.open("rb"), as_attachment=True, filename=archive.name)
+
+
+class ReleaseFile(Download):
+    @extend_schema(
+        operation_id="release_file",
+        summary="One of the files worth having without the zip",
+        description="README, licence, changes since the release before, provenance of every annotation, "
+        "manifest with the digest of every file.",
+        parameters=[OpenApiParameter("name", str, OpenApiParameter.PATH, enum=list(releases.PARTS))],
+        responses={(200, "application/octet-stream"): OpenApiTypes.BINARY, **READS},
+    )
+    def get(self, request: Request, slug: str, number: int, name: str) -> FileResponse:
+        kept = releases.part_of(release_or_404(slug, number), name)
+        if kept is None:
+            raise Http404
+        return FileResponse(
+            kept.open("rb"), as_attachment=True, filename=name, content_type="application/octet-stream"
+        )
 
 
 def release_or_404(slug: str, number: int) -> Release:

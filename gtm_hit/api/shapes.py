@@ -9,10 +9,13 @@ from rest_framework import serializers
 
 from gtm_hit.api.scene import image_url
 from gtm_hit.api.serializers import LARGEST, ImageRefSerializer
+from gtm_hit.metrics.matching import RADIUS
 from gtm_hit.models import Annotation, Assignment, Batch, Camera, Dataset, Frame, Job, Layer, Release
 from gtm_hit.ops import exporting
 from gtm_hit.ops.quality.comparing import LARGEST_RADIUS, Scope
+from gtm_hit.ops.quality.statistics import EVERY
 
+MOST_EVERY = 10_000
 MOST_FRAMES = 500  # whose annotations come in one answer
 
 
@@ -255,6 +258,21 @@ class EvaluationQuery(serializers.Serializer[Any]):
     truth = serializers.CharField(max_length=120, help_text="name of a layer")
     found = serializers.CharField(max_length=120, help_text="name of a layer")
     radius = serializers.FloatField(
-        min_value=0.001, max_value=LARGEST_RADIUS, default=0.5, help_text="metres"
+        min_value=0.001, max_value=LARGEST_RADIUS, default=RADIUS, help_text="metres"
     )
     scope = serializers.ChoiceField(choices=[each.value for each in Scope], default=Scope.BOTH.value)
+    start = serializers.IntegerField(
+        min_value=0, max_value=LARGEST, default=0, help_text="frame number from which on to compare"
+    )
+
+
+class CoverageQuery(serializers.Serializer[Any]):
+    every = serializers.IntegerField(
+        min_value=1, max_value=MOST_EVERY, default=EVERY, help_text="coverage: every n-th position"
+    )
+
+
+class AgreementQuery(serializers.Serializer[Any]):
+    radius = serializers.FloatField(
+        min_value=0.001, max_value=LARGEST_RADIUS, default=RADIUS, help_text="metres"
+    )

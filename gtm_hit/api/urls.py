@@ -6,7 +6,20 @@ from django.urls import URLPattern, URLResolver, include, path, re_path
 from drf_spectacular.views import SpectacularAPIView, SpectacularSwaggerView
 
 # Importing it tells drf-spectacular about the tokens.
-from gtm_hit.api import datasets, frames, imports, jobs, releases, schema, tutorial, work  # noqa: F401
+from gtm_hit.api import (
+    calibrations,
+    datasets,
+    frames,
+    imports,
+    jobs,
+    quality,
+    releases,
+    schema,  # noqa: F401
+    statistics,
+    tutorial,
+    videos,
+    work,
+)
 from gtm_hit.api.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.images import ImageView
 from gtm_hit.api.missing import MissingView
@@ -39,7 +52,9 @@ learning = [
 one_layer: list[URLPattern | URLResolver] = [
     path("", datasets.OneLayer.as_view()),
     path("annotations/", datasets.Annotations.as_view()),
-    path("statistics/", datasets.Statistics.as_view()),
+    path("statistics/", statistics.Statistics.as_view()),
+    path("statistics/numbers.csv", statistics.StatisticsTable.as_view()),
+    path("statistics/<slug:figure>.<slug:kind>", statistics.StatisticsFigure.as_view()),
     path("exports/", releases.Exports.as_view()),
 ]
 one_dataset: list[URLPattern | URLResolver] = [
@@ -48,14 +63,22 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("frames/", datasets.Frames.as_view()),
     path("layers/", datasets.Layers.as_view()),
     path("layers/<str:name>/", include(one_layer)),
-    path("evaluation/", datasets.Evaluation.as_view()),
+    path("evaluation/", quality.Evaluation.as_view()),
+    path("evaluation/frames/", quality.EvaluationFrames.as_view()),
+    path("evaluation/frames/<int:number>/", quality.EvaluationFrame.as_view()),
+    path("agreement/", quality.Agreement.as_view()),
+    path("calibrations/", calibrations.Calibrations.as_view()),
+    path("calibrations/<int:pk>/", calibrations.OneCalibration.as_view()),
+    path("calibrations/<int:pk>/confirm/", calibrations.ConfirmCalibration.as_view()),
     path("annotation-imports/", imports.AnnotationImports.as_view()),
     path("batches/", work.Batches.as_view()),
+    path("link/", work.Link.as_view()),
     path("progress/", work.Progress.as_view()),
     path("assignments/", work.Assignments.as_view()),
     path("releases/", releases.Releases.as_view()),
     path("releases/<int:number>/", releases.OneRelease.as_view()),
     path("releases/<int:number>/download/", releases.DownloadRelease.as_view()),
+    path("releases/<int:number>/files/<str:name>", releases.ReleaseFile.as_view()),
 ]
 scripts: list[URLPattern | URLResolver] = [
     path("datasets/", datasets.Datasets.as_view()),
@@ -63,6 +86,8 @@ scripts: list[URLPattern | URLResolver] = [
     path("sources/", imports.Sources.as_view()),
     path("uploads/", imports.Uploads.as_view()),
     path("imports/", imports.Imports.as_view()),
+    path("video-imports/", videos.VideoImports.as_view()),
+    path("evaluations/", quality.TextFiles.as_view()),
     path("jobs/", jobs.Jobs.as_view()),
     path("jobs/<int:pk>/", jobs.OneJob.as_view()),
     path("jobs/<int:pk>/cancel/", jobs.CancelJob.as_view()),

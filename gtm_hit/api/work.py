@@ -6,6 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 from django.db.models import QuerySet
+from django.urls import reverse
 from drf_spectacular.utils import OpenApiExample, extend_schema
 from rest_framework import serializers
 from rest_framework.generics import ListAPIView
@@ -16,7 +17,7 @@ from gtm_hit.api import shapes
 from gtm_hit.api.frames import valid
 from gtm_hit.api.staff import ASKS, READS, WRITES, Pages, StaffView, answers, asked, dataset_or_404, invalid
 from gtm_hit.models import ApiToken, Assignment, Batch
-from gtm_hit.ops import batches, overview
+from gtm_hit.ops import batches, overview, tokens, workers
 
 
 class MakeBatchesSerializer(serializers.Serializer[Any]):
@@ -64,6 +65,41 @@ class Batches(StaffView, ListAPIView[Batch]):
             return Response({"made": batches.make_batches(dataset, **wanted)})
         except batches.BatchError as error:
             raise invalid("", error) from error
+
+
+class LinkQuery(serializers.Serializer[Any]):
+    worker = serializers.CharField(
+        max_length=workers.MAX_ID,
+        required=False,
+        help_text="a worker's id; the link is this worker's own then",
+    )
+    platform = serializers.CharField(max_length=workers.MAX_PLATFORM, default="link")
+
+
+class LinkSerializer(serializers.Serializer[Any]):
+    link = serializers.URLField(help_text="valid until the server's key changes")
+
+
+class Link(StaffView):
+    # A link lets workers in, and that is more than reading.
+    read_scope = ApiToken.Scope.WORK
+
+    @extend_schema(
+        operation_id="link",
+        summary="The link that lets workers into a dataset, or one worker's own",
+        parameters=[LinkQuery],
+        responses=answers(200, LinkSerializer, ASKS),
+    )
+    def get(self, request: Request, slug: str) -> Response:
+        dataset = dataset_or_404(slug)
+        wanted = asked(request, LinkQuery)
+        try:
+            platform = workers.clean_platform(wanted["platform"])
+            external_id = workers.clean_external_id(wanted["worker"]) if "worker" in wanted else None
+        except workers.InvalidWorkerId as error:
+            raise invalid("", error) from error
+        address = reverse("join", args=[tokens.entry_token(dataset, platform, external_id)])
+        return Response({"link": request.build_absolute_uri(address)})
 
 
 class Progress(StaffView):

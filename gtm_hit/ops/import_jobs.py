@@ -13,9 +13,10 @@ from gtm_hit.formats.problems import FormatError, Problem
 from gtm_hit.models import Dataset, Job
 from gtm_hit.ops import jobs, uploads
 from gtm_hit.ops.importing.dataset import ImportFailed, import_dataset
-from gtm_hit.ops.importing.options import ImportOptions
+from gtm_hit.ops.importing.options import ImportOptions, SceneValues
 from gtm_hit.ops.videos.importing import import_videos
 from gtm_hit.ops.videos.options import VideoOptions, VideoSource
+from gtm_hit.ops.videos.plan import USUAL
 
 UNPACKING = "unpacking"
 WRITING = "writing to the database"
@@ -54,6 +55,12 @@ def start_videos(
         "until": until,
     }
     return jobs.create_once(Job.Kind.IMPORT_VIDEOS, _dataset(options), parameters, user)
+
+
+def video_values(slug: str, preset: str | None, given: SceneValues) -> SceneValues:
+    """With WILDTRACK's frames where neither a preset nor the dataset says which to take."""
+    known = preset or Dataset.objects.filter(slug=slug).exists()
+    return given if known else SceneValues(**{**USUAL, **given})
 
 
 def run_import(mine: jobs.Run) -> dict[str, Any]:

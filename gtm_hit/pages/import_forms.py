@@ -10,7 +10,7 @@ from django.utils.translation import gettext_lazy
 from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.geometry.cylinder import FootRule
 from gtm_hit.models import Dataset
-from gtm_hit.ops import uploads
+from gtm_hit.ops import import_jobs, uploads
 from gtm_hit.ops.importing.calibrations import UNITS
 from gtm_hit.ops.importing.options import PRESETS, REQUIRED, ImportOptions, SceneValues, scene
 from gtm_hit.ops.videos.options import SourceError, VideoSource, parse_source
@@ -172,9 +172,8 @@ class VideosForm(SceneForm):
         return cleaned
 
     def values(self) -> SceneValues:
-        given = super().values()
-        known = Dataset.objects.filter(slug=self.cleaned_data["slug"]).exists()
-        return given if known or self.cleaned_data["preset"] else SceneValues(**{**USUAL, **given})
+        cleaned = self.cleaned_data
+        return import_jobs.video_values(cleaned["slug"], cleaned["preset"], super().values())
 
     def options(self) -> dict[str, Any]:
         return {**super().options(), "undistort": not self.cleaned_data.get("as_taken")}

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import dataclass
 from typing import Any
 from urllib.parse import urlencode
@@ -22,7 +20,7 @@ from gtm_hit.metrics.coverage import Coverage
 from gtm_hit.models import Layer
 from gtm_hit.ops.quality.statistics import EVERY, LayerStatistics, ground_coverage, layer_statistics
 from gtm_hit.ops.quality.statistics_figures import FIGURES, figure
-from gtm_hit.ops.quality.statistics_numbers import csv_header, csv_lines
+from gtm_hit.ops.quality.statistics_files import numbers_csv
 from gtm_hit.pages.access import staff_only
 from gtm_hit.pages.datasets import summary_or_404
 from gtm_hit.pages.layer_choice import LayerChoice
@@ -126,11 +124,8 @@ def statistics_figure(request: HttpRequest, slug: str, name: str) -> HttpRespons
 @staff_only
 def statistics_csv(request: HttpRequest, slug: str) -> HttpResponse:
     asked = asked_for(request, slug)
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(csv_header())
-    writer.writerows(csv_lines(*asked.measured()))
-    return attachment(stream.getvalue(), "text/csv; charset=utf-8", f"{base_name(asked)}-statistics.csv")
+    table = numbers_csv(*asked.measured())
+    return attachment(table, "text/csv; charset=utf-8", f"{base_name(asked)}-statistics.csv")
 
 
 def base_name(asked: Asked) -> str:

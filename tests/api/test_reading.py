@@ -14,7 +14,9 @@ READS = [
     "/api/v1/datasets/",
     BASE,
     *(BASE + part for part in ("cameras/", "frames/", "layers/", "layers/own/", "layers/own/annotations/")),
-    *(BASE + part for part in ("batches/", "progress/", "assignments/", "releases/")),
+    *(BASE + part for part in ("batches/", "progress/", "assignments/", "releases/", "agreement/")),
+    *(BASE + "layers/own/statistics/" + part for part in ("", "numbers.csv", "coverage.svg", "heights.png")),
+    *(BASE + "evaluation/" + part + "?truth=own&found=own" for part in ("", "frames/", "frames/0/")),
     "/api/v1/jobs/",
     "/api/v1/sources/",
 ]
@@ -45,6 +47,9 @@ def test_nobody_else_reads(stranger: Caller, alice: Caller, user: Caller, path: 
     "path",
     [
         *("/api/v1/datasets/other/", "/api/v1/datasets/other/frames/", BASE + "layers/none/"),
+        *(BASE + "layers/own/statistics/coverage.pdf", BASE + "layers/own/statistics/noses.svg"),
+        *(BASE + "evaluation/frames/5/?truth=own&found=own", BASE + "calibrations/1/"),
+        BASE + "releases/1/files/README.md",
         *(BASE + "layers/a%00b/", BASE + "releases/1/", BASE + "releases/1/download/"),
         *("/api/v1/jobs/1/", f"/api/v1/jobs/{10**30}/", "/api/v1/jobs/1/download/"),
         *(BASE + "frames/?page=2", BASE + "frames/?page=x"),
@@ -64,6 +69,8 @@ def test_what_is_not_there_is_not_found(path: str) -> None:
         (BASE + "layers/own/annotations/?frames=501", "frames"),
         *((BASE + "evaluation/?found=own", "truth"), (BASE + "evaluation/?truth=own&found=x", "found")),
         (BASE + "evaluation/?truth=own&found=own&radius=nan", "radius"),
+        (BASE + "evaluation/frames/?truth=own&found=own&scope=all", "scope"),
+        *((BASE + "agreement/?radius=0", "radius"), (BASE + "layers/own/statistics/?every=0", "every")),
     ],
 )
 def test_a_senseless_question_is_refused_with_its_place(path: str, place: str) -> None:

@@ -10,6 +10,7 @@ from django.core.files.uploadedfile import SimpleUploadedFile
 
 from gtm_hit.models import Batch, Dataset, Job, Layer, Release
 from gtm_hit.ops import jobs
+from gtm_hit.ops.releases import PARTS
 from gtm_hit.tasks import OPERATIONS
 from tests.api.conftest import Caller, bearer
 from tests.ops.square_layer import fill, make_square
@@ -18,13 +19,24 @@ from tests.work_scene import make_layer
 BASE = "/api/v1/datasets/square/"
 IMPORT = {"source": "incoming/there", "slug": "new", "preset": "wildtrack"}
 ANNOTATIONS = {"source": "incoming/there", "format": "csv", "layer": "found"}
+VIDEOS = {
+    **IMPORT,
+    "videos": [{"camera": "C1", "file": "one.mp4", "offset": 12.4}, {"camera": "C2", "file": "two.mp4"}],
+}
 RELEASE = {"layer": "truth", "licence": "Use it as you like."}
+
+
+def video(**values: Any) -> dict[str, Any]:
+    return {"camera": "C1", "file": "two.mp4", **values}
+
+
 WRITES = [
     ("work", BASE + "batches/", {"size": 5}),
     ("release", BASE + "layers/truth/exports/", {"formats": ["csv"]}),
     ("release", BASE + "releases/", RELEASE),
     ("import", "/api/v1/imports/", IMPORT),
     ("import", BASE + "annotation-imports/", ANNOTATIONS),
+    ("import", "/api/v1/video-imports/", VIDEOS),
 ]
 
 
@@ -33,6 +45,9 @@ def own_storage(settings: Any, tmp_path: Path) -> None:
     for name in ("TABLES", "EXPORTS", "RELEASES", "UPLOADS", "INCOMING"):
         setattr(settings, f"{name}_ROOT", tmp_path / name.lower())
     (settings.INCOMING_ROOT / "there").mkdir(parents=True)
+    for name in ("one.mp4", "two.mp4"):
+        (settings.INCOMING_ROOT / "there" / name).touch()
+    (settings.INCOMING_ROOT / "outside.mp4").touch()
 
 
 @pytest.fixture(autouse=True)
@@ -94,6 +109,19 @@ def test_batches_are_made_once() -> None:
         ("/api/v1/imports/", {**IMPORT, "preset": None}, "values"),
         ("/api/v1/imports/", {**IMPORT, "values": {"step": "nan"}}, "values.step"),
         ("/api/v1/imports/", {**IMPORT, "values": {"step": 10**400}}, "values.step"),
+        ("/api/v1/video-imports/", {**VIDEOS, "preset": None}, "values"),
+        ("/api/v1/video-imports/", {**VIDEOS, "videos": []}, "videos"),
+        ("/api/v1/video-imports/", {**VIDEOS, "source": "uploads/x.zip"}, "source"),
+        ("/api/v1/video-imports/", {**VIDEOS, "start": -1}, "start"),
+        *(
+            ("/api/v1/video-imports/", {**VIDEOS, "videos": [video(file="one.mp4"), video(**wrong)]}, place)
+            for wrong, place in [
+                ({"file": "../outside.mp4"}, "videos.1.file"),
+                ({"file": "three.mp4"}, "videos.1.file"),
+                ({"file": "a\x00b"}, "videos.1.file"),
+                ({"offset": "nan"}, "videos.1.offset"),
+            ]
+        ),
         (BASE + "annotation-imports/", {**ANNOTATIONS, "layer": "truth"}, "layer"),
         (BASE + "annotation-imports/", {**ANNOTATIONS, "drop": ["all"]}, "drop.0"),
     ],
@@ -123,6 +151,10 @@ def test_a_release_is_listed_and_downloaded_when_it_is_done() -> None:
     assert script.get(BASE + "releases/1/").json() == listed
     download = script.get(BASE + "releases/1/download/")
     assert b"".join(download.streaming_content)[:2] == b"PK"
+    parts = {name: script.get(f"{BASE}releases/1/files/{name}") for name in PARTS}
+    assert all(b"".join(part.streaming_content) for part in parts.values())
+    assert script.get(BASE + "releases/1/files/people.csv").status_code == 404
+    assert bearer("release").get(BASE + "releases/1/files/README.md").status_code == 403
     assert Release.objects.get().created_by.username == "script"
 
 

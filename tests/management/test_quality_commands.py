@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 import pytest
 from django.core.management import CommandError, call_command
+from PIL import Image as Picture
 
 from gtm_hit.models import Layer
 from gtm_hit.ops import assignments, batches
@@ -51,9 +52,13 @@ def test_statistics_as_json_are_one_object(layers: tuple[Layer, Layer]) -> None:
 def test_figures_are_written_as_files(layers: tuple[Layer, Layer], tmp_path: Path) -> None:
     run("statistics", "square", "truth", "--figures", str(tmp_path / "figures"))
     files = sorted((tmp_path / "figures").iterdir())
-    assert [file.name for file in files] == sorted(f"{name}.svg" for name in FIGURES)
-    for file in files:
-        ElementTree.parse(file)
+    expected = [f"{name}.{kind}" for name in FIGURES for kind in ("svg", "png")]
+    assert [file.name for file in files] == sorted([*expected, "numbers.csv"])
+    for name in FIGURES:
+        drawn = ElementTree.parse(tmp_path / "figures" / f"{name}.svg").getroot()
+        with Picture.open(tmp_path / "figures" / f"{name}.png") as picture:
+            assert picture.size == (3 * float(drawn.get("width")), 3 * float(drawn.get("height")))
+            assert picture.convert("L").getextrema() == (0, 255)
 
 
 def test_comparelayers_prints_the_scores_of_the_page(layers: tuple[Layer, Layer]) -> None:

@@ -10,7 +10,8 @@ from django.core.management.base import BaseCommand, CommandError
 from gtm_hit.formats.files import write_bytes
 from gtm_hit.management.layers import layer_named
 from gtm_hit.ops.quality.statistics import EVERY, ground_coverage, layer_statistics
-from gtm_hit.ops.quality.statistics_figures import FIGURES, figure
+from gtm_hit.ops.quality.statistics_figures import FIGURES
+from gtm_hit.ops.quality.statistics_files import PICTURES, numbers_csv
 from gtm_hit.ops.quality.statistics_numbers import DISTRIBUTIONS, as_numbers
 
 
@@ -24,7 +25,12 @@ class Command(BaseCommand):
             "--every", type=int, default=EVERY, help="coverage: every n-th position along both axes"
         )
         parser.add_argument("--json", action="store_true", help="print one object")
-        parser.add_argument("--figures", type=Path, metavar="FOLDER", help="write the figures there, as SVG")
+        parser.add_argument(
+            "--figures",
+            type=Path,
+            metavar="FOLDER",
+            help="write the figures there, as SVG and PNG, and all numbers as CSV",
+        )
 
     def handle(self, *, slug: str, layer: str, every: int, figures: Path | None, **options: Any) -> None:
         if every < 1:
@@ -34,8 +40,10 @@ class Command(BaseCommand):
         numbers = as_numbers(found, ground)
         self.stdout.write(json.dumps(numbers) if options["json"] else "\n".join(_lines(numbers)))
         if figures:
+            write_bytes(figures / "numbers.csv", numbers_csv(found, ground).encode())
             for name in FIGURES:
-                write_bytes(figures / f"{name}.svg", figure(name, found, ground).encode())
+                for kind, (_content_type, draw) in PICTURES.items():
+                    write_bytes(figures / f"{name}.{kind}", draw(name, found, ground))
 
 
 def _lines(numbers: dict[str, Any]) -> list[str]:
