@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from operator import itemgetter
@@ -110,9 +110,31 @@ def frame_json(people: Iterable[PersonPosition], cameras: int) -> bytes:
         boxes = person.boxes
         if boxes is None or boxes.shape != (cameras, 4) or boxes.dtype.kind != "i":
             raise ValueError(f"person {person.person} does not have integer boxes of {cameras} cameras")
-        extra = _extra_text(person.extra) if person.extra else ""
+        extra = extra_text(person.extra) if person.extra else ""
         texts.append(template % (person.person, person.position, *boxes.ravel().tolist(), extra))
-    return ("[\n" + ",\n".join(texts) + "\n]" if texts else "[]").encode()
+    return joined(texts)
+
+
+def person_texts(
+    persons: np.ndarray, positions: np.ndarray, boxes: np.ndarray, extras: Iterable[str]
+) -> list[str]:
+    """What `joined` makes the bytes of `frame_json` of, many people at once.
+
+    persons, positions : (N,) ids, nobody twice in one frame
+    boxes : (N, C, 4) integers
+    extras : what `extra_text` gives, or nothing
+    """
+    template = _person_template(boxes.shape[1])
+    ids = np.column_stack((persons, positions))
+    if ids.size and ids.min() < 0:
+        raise ValueError("persons and positions are not negative")
+    numbers = np.concatenate((ids, boxes.reshape(len(boxes), -1)), axis=1)
+    return [template % (*row, extra) for row, extra in zip(numbers.tolist(), extras, strict=True)]
+
+
+def joined(people: Sequence[str]) -> bytes:
+    """The file of one frame's people."""
+    return ("[\n" + ",\n".join(people) + "\n]" if people else "[]").encode()
 
 
 def write_frame(folder: Path, frame: FrameAnnotations, cameras: int, digits: int = 8) -> Path:
@@ -132,7 +154,8 @@ def _person_template(cameras: int) -> str:
     return text.removeprefix("[\n").removesuffix("\n    }\n]") + "%s\n    }"
 
 
-def _extra_text(extra: Mapping[str, Any]) -> str:
+def extra_text(extra: Mapping[str, Any]) -> str:
+    """Further keys of a person as they follow the published ones. ValueError if they would hide those."""
     if hidden := _PERSON_KEYS & extra.keys():
         raise ValueError(f"extra keys would hide {sorted(hidden)}")
     if not any(isinstance(value, (dict, list, tuple)) for value in extra.values()):

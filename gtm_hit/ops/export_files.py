@@ -1,4 +1,4 @@
-"""The files of an export, whose digests are taken while they are written."""
+"""The files of an export: digests and archive are made while they are written, not by reading them again."""
 
 from __future__ import annotations
 
@@ -9,19 +9,25 @@ from pathlib import Path
 from typing import BinaryIO, cast
 
 from gtm_hit.formats.manifest import FileEntry
+from gtm_hit.formats.stable_zip import StableZip
 
 
 class ExportFiles:
-    """Files below one folder; `entries` is what a manifest says of them."""
+    """Files below one folder, and in an archive in the order they were finished.
 
-    def __init__(self, folder: Path) -> None:
+    `entries` is what a manifest says of them.
+    """
+
+    def __init__(self, folder: Path, archive: StableZip) -> None:
         self.folder = folder
+        self.archive = archive
         self.entries: dict[str, FileEntry] = {}
         self._made: set[Path] = set()
 
     def write(self, name: str, data: bytes) -> None:
-        self._path(name).write_bytes(data)
-        self._note(name, len(data), hashlib.sha256(data).hexdigest())
+        with self._path(name).open("wb") as file:
+            file.write(data)
+        self._note(name, len(data), hashlib.sha256(data).hexdigest(), data)
 
     @contextmanager
     def stream(self, name: str) -> Iterator[BinaryIO]:
@@ -29,7 +35,7 @@ class ExportFiles:
         with self._path(name).open("wb") as file:
             digesting = _Digesting(file)
             yield cast(BinaryIO, digesting)
-        self._note(name, digesting.size, digesting.digest.hexdigest())
+        self._note(name, digesting.size, digesting.digest.hexdigest(), self.folder / name)
 
     def path(self, name: str) -> Path:
         """For a writer that makes the file itself; `note` it afterwards."""
@@ -38,7 +44,7 @@ class ExportFiles:
     def note(self, name: str) -> None:
         with (self.folder / name).open("rb") as stream:
             digest = hashlib.file_digest(stream, "sha256").hexdigest()
-            self._note(name, stream.tell(), digest)
+            self._note(name, stream.tell(), digest, self.folder / name)
 
     def _path(self, name: str) -> Path:
         path = self.folder / name
@@ -47,8 +53,9 @@ class ExportFiles:
             self._made.add(path.parent)
         return path
 
-    def _note(self, name: str, size: int, digest: str) -> None:
+    def _note(self, name: str, size: int, digest: str, content: Path | bytes) -> None:
         self.entries[name] = FileEntry(size, digest)
+        self.archive.add(name, content)
 
 
 class _Digesting:

@@ -10,6 +10,7 @@ from typing import Any
 
 from gtm_hit.formats.camera_json import save_cameras
 from gtm_hit.formats.manifest import Manifest, write_manifest
+from gtm_hit.formats.stable_zip import StableZip
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Annotation, Dataset, Layer
 from gtm_hit.ops.coverage import table
@@ -24,11 +25,12 @@ FRAMES = "writing frames"
 
 
 class ExportFolder:
-    """Fills one empty folder with one layer in the chosen formats; `more` are further writers."""
+    """Fills an empty folder and an archive with a layer in the chosen formats; `more` are further writers."""
 
     def __init__(
         self,
         folder: Path,
+        archive: StableZip,
         layer: Layer,
         report: Report,
         formats: Collection[str] = DEFAULT_FORMATS,
@@ -39,7 +41,7 @@ class ExportFolder:
         self.report = report
         self.formats = list(formats)
         self.writers = [*(FORMATS[name].writer for name in formats), *more]
-        self.files = ExportFiles(folder)
+        self.files = ExportFiles(folder, archive)
         self.frames = self.annotations = self.not_validated = 0
         self.persons: set[int] = set()
 
@@ -57,6 +59,7 @@ class ExportFolder:
             writers = [make(target) for make in self.writers]
             reader = FrameReader(self.layer, self.dataset, self.cameras, rectangles)
             total = reader.count()
+            self.report(FRAMES, 0, total)
             for chunk in reader:
                 self._add(chunk, writers, total)
             for writer in writers:
@@ -69,7 +72,8 @@ class ExportFolder:
         manifest = Manifest(
             self._counts(self.cameras), {**self._parameters(), **parameters}, self.files.entries
         )
-        write_manifest(self.files.folder, manifest)
+        path = write_manifest(self.files.folder, manifest)
+        self.files.archive.add(path.name, path)
         return manifest
 
     def _add(self, chunk: Chunk, writers: list[Writer], total: int) -> None:

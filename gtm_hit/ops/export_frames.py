@@ -77,24 +77,27 @@ class FrameReader:
             .order_by()
             .values_list("frame_id", "person", "position", "height", "radius", "state", "origin")
         )
-        rows.sort(key=lambda row: (numbers[row[0]], row[1]))
         columns: list[Any] = list(zip(*rows, strict=True)) or [()] * 7
-        positions = np.array(columns[2], dtype=np.int64)
+        frames = np.fromiter(map(numbers.__getitem__, columns[0]), np.int64, len(rows))
+        persons = np.array(columns[1], dtype=np.int64)
+        order = np.lexsort((persons, frames))
+        frames, persons, positions = frames[order], persons[order], np.array(columns[2], np.int64)[order]
         # None becomes NaN: the dataset's own cylinder.
-        heights, radii = (np.array(column, dtype=np.float64) for column in columns[3:5])
+        heights, radii = (np.array(column, dtype=np.float64)[order] for column in columns[3:5])
+        states, origins = ([column[row] for row in order.tolist()] for column in columns[5:7])
         boxes, visible = annotation_rectangles(
             self.dataset, self.cameras, self.table, positions, heights, radii
         )
         return Chunk(
             numbers=sorted(numbers.values()),
-            frames=np.array([numbers[frame] for frame in columns[0]], dtype=np.int64),
-            persons=np.array(columns[1], dtype=np.int64),
+            frames=frames,
+            persons=persons,
             positions=positions,
             xy=self.dataset.grid.metres(positions).round(METRE_DIGITS),
             heights=heights,
             radii=radii,
-            states=list(columns[5]),
-            origins=list(columns[6]),
+            states=states,
+            origins=origins,
             boxes=boxes,
             visible=visible,
         )

@@ -19,16 +19,15 @@ from django.contrib.auth.models import User
 
 from gtm_hit.formats.manifest import FileEntry, Manifest, read_manifest
 from gtm_hit.formats.problems import FormatError
-from gtm_hit.formats.stable_zip import write_folder_zip
+from gtm_hit.formats.stable_zip import stable_zip
 from gtm_hit.models import Job, Layer
 from gtm_hit.ops import jobs
 from gtm_hit.ops.export_folder import FRAMES, TABLE, ExportFolder
 from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, chosen
 from gtm_hit.ops.export_formats.target import RECTANGLES, Report
 
-PACKING = "packing files"
 # Percents of the whole at which each phase begins and ends.
-SHARES = {TABLE: (0, 5), FRAMES: (5, 50), RECTANGLES: (50, 60), PACKING: (60, 100)}
+SHARES = {TABLE: (0, 5), FRAMES: (5, 85), RECTANGLES: (85, 100)}
 PARTIAL = re.compile(r".+\.partial-(?P<job>\d+)-(?P<attempt>\d+)")
 
 
@@ -107,15 +106,10 @@ def export_layer(
     with empty_folder(partial):
         content, archive = partial / "content", partial / "content.zip"
         content.mkdir()
-        manifest = ExportFolder(content, layer, report, chosen(formats)).write()
+        with stable_zip(archive, archive_root(layer)) as packed:
+            manifest = ExportFolder(content, packed, layer, report, chosen(formats)).write()
         if not manifest.counts["frames"]:
             raise ExportError(f"Nothing has been saved in the layer {layer.name} yet.")
-        write_folder_zip(
-            archive,
-            content,
-            archive_root(layer),
-            progress=lambda done, total: report(PACKING, done, total),
-        )
         if confirm:
             confirm()
         replace(content, folder, partial / "before")

@@ -15,7 +15,7 @@ from django.db import transaction
 from django.db.models import F, QuerySet
 
 from gtm_hit.formats.manifest import Manifest, manifest_json
-from gtm_hit.formats.stable_zip import write_folder_zip
+from gtm_hit.formats.stable_zip import StableZip, stable_zip
 from gtm_hit.models import Dataset, Job, Layer, Release
 from gtm_hit.ops import exporting, jobs
 from gtm_hit.ops.export_folder import FRAMES, TABLE, ExportFolder
@@ -32,10 +32,9 @@ FORMATS = ("wildtrack", "mot", "coco", "csv", "text")  # unless others are chose
 MEASURING = "measuring"
 SHARES = {
     TABLE: (0, 5),
-    FRAMES: (5, 45),
-    RECTANGLES: (45, 52),
-    MEASURING: (52, 60),
-    exporting.PACKING: (60, 100),
+    FRAMES: (5, 80),
+    RECTANGLES: (80, 90),
+    MEASURING: (90, 100),
 }
 PARTS = ("README.md", "LICENSE", CHANGES, PROVENANCE, "manifest.json")  # worth having without the rest
 MOST_LICENCE = 100_000  # characters
@@ -113,14 +112,9 @@ def make_release(
     with exporting.empty_folder(partial):
         content, archive = partial / "content", partial / "content.zip"
         content.mkdir()
-        manifest = _write(order, content, number, before, report)
+        with stable_zip(archive, f"{dataset.slug}-release-{number}") as packed:
+            manifest = _write(order, content, packed, number, before, report)
         _protect(content)
-        write_folder_zip(
-            archive,
-            content,
-            f"{dataset.slug}-release-{number}",
-            progress=lambda done, total: report(exporting.PACKING, done, total),
-        )
         if confirm:
             confirm()
         with transaction.atomic():
@@ -186,10 +180,12 @@ def figure_of(release: Release, name: str) -> str:
     return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
-def _write(order: Order, content: Path, number: int, before: Release | None, report: Report) -> Manifest:
+def _write(
+    order: Order, content: Path, packed: StableZip, number: int, before: Release | None, report: Report
+) -> Manifest:
     layer, dataset = order.layer, order.layer.dataset
     state = state_of(layer)
-    export = ExportFolder(content, layer, report, chosen(order.formats), more=[ProvenanceWriter])
+    export = ExportFolder(content, packed, layer, report, chosen(order.formats), more=[ProvenanceWriter])
     export.write_layer()
     if not export.frames:
         raise ReleaseError(f"Nothing has been saved in the layer {layer.name} yet.")

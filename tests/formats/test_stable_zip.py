@@ -2,40 +2,55 @@ from __future__ import annotations
 
 import io
 import os
+import tempfile
 import zipfile
 from pathlib import Path
 
 import pytest
 
-from gtm_hit.formats.stable_zip import write_folder_zip, write_zip
+from gtm_hit.formats import stable_zip as module
+from gtm_hit.formats.stable_zip import stable_zip
 
 
-def zipped(files: dict[str, bytes | Path], compressed: bool = True) -> bytes:
-    stream = io.BytesIO()
-    write_zip(stream, files, compressed)
-    return stream.getvalue()
+def zipped(files: dict[str, bytes | Path], compressed: bool = True, prefix: str = "") -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "a.zip"
+        with stable_zip(path, prefix, compressed) as archive:
+            for name, source in files.items():
+                archive.add(name, source)
+        return path.read_bytes()
 
 
 def test_contents_come_back() -> None:
-    with zipfile.ZipFile(io.BytesIO(zipped({"b/c.json": b"[]" * 1000, "a.txt": b"x"}))) as archive:
+    with zipfile.ZipFile(
+        io.BytesIO(zipped({"b/c.json": b"[]" * 1000, "a.txt": b"x"}, prefix="out"))
+    ) as archive:
         assert archive.testzip() is None
-        assert archive.namelist() == ["a.txt", "b/c.json"]
-        assert archive.read("b/c.json") == b"[]" * 1000
+        assert archive.namelist() == ["out/b/c.json", "out/a.txt"]
+        assert archive.read("out/b/c.json") == b"[]" * 1000
 
 
 @pytest.mark.parametrize("compressed", [True, False])
-def test_order_times_and_permissions_do_not_change_the_bytes(tmp_path: Path, compressed: bool) -> None:
-    archives = []
-    for folder, names in [(tmp_path / "one", ("a", "b")), (tmp_path / "two", ("b", "a"))]:
-        folder.mkdir()
-        for name in names:
-            (folder / name).write_bytes(name.encode() * 5000)
-        archives.append(tmp_path / f"{folder.name}.zip")
-    os.utime(tmp_path / "two" / "a", (0, 0))
-    (tmp_path / "two" / "b").chmod(0o600)
-    for folder, path in [("one", archives[0]), ("two", archives[1])]:
-        write_folder_zip(path, tmp_path / folder, prefix="export", compressed=compressed)
-    assert archives[0].read_bytes() == archives[1].read_bytes()
+def test_times_and_permissions_do_not_change_the_bytes(tmp_path: Path, compressed: bool) -> None:
+    for name in ("one", "two"):
+        (tmp_path / name).write_bytes(b"a" * 5000)
+    os.utime(tmp_path / "two", (0, 0))
+    (tmp_path / "two").chmod(0o600)
+    first, second = (zipped({"a": tmp_path / name}, compressed) for name in ("one", "two"))
+    assert first == second
+
+
+def test_many_more_files_than_wait_at_once_come_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "_BYTES_TOGETHER", 10)
+    files: dict[str, bytes | Path] = {str(number): b"%d" % number * 8 for number in range(100)}
+    with zipfile.ZipFile(io.BytesIO(zipped(files))) as archive:
+        assert {name: archive.read(name) for name in archive.namelist()} == files
+
+
+def test_a_name_cannot_be_there_twice(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="there twice"), stable_zip(tmp_path / "a.zip") as archive:
+        archive.add("a", b"x")
+        archive.add("a", b"x")
 
 
 def test_a_file_and_its_bytes_give_the_same_archive(tmp_path: Path) -> None:
@@ -68,15 +83,20 @@ def test_a_name_that_leaves_the_folder_is_refused(name: str) -> None:
         zipped({name: b"x"})
 
 
-def test_a_failed_archive_leaves_nothing_behind(tmp_path: Path) -> None:
-    (tmp_path / "in").mkdir()
-    (tmp_path / "in" / "a\\b").write_bytes(b"x")
-    with pytest.raises(ValueError):
-        write_folder_zip(tmp_path / "out" / "a.zip", tmp_path / "in")
+@pytest.mark.parametrize("together", [0, 1 << 20])
+def test_a_failed_archive_leaves_nothing_behind(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, together: int
+) -> None:
+    monkeypatch.setattr(module, "_BYTES_TOGETHER", together)
+    with pytest.raises(FileNotFoundError), stable_zip(tmp_path / "out" / "a.zip") as archive:
+        archive.add("a", tmp_path / "gone")
+        for number in range(20):
+            archive.add(str(number), b"x")
     assert list((tmp_path / "out").iterdir()) == []
 
 
-def test_progress_is_told_by_file(tmp_path: Path) -> None:
-    told: list[tuple[int, int]] = []
-    write_zip(io.BytesIO(), {"a": b"", "b": b""}, progress=lambda done, total: told.append((done, total)))
-    assert told == [(1, 2), (2, 2)]
+def test_an_archive_given_up_leaves_nothing_behind(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt), stable_zip(tmp_path / "out" / "a.zip") as archive:
+        archive.add("a", b"x")
+        raise KeyboardInterrupt
+    assert list((tmp_path / "out").iterdir()) == []

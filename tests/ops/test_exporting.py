@@ -246,7 +246,7 @@ def test_a_long_layer_is_read_in_chunks_with_two_queries_each(
 
 def test_nothing_is_left_when_it_fails(layer: Layer, tmp_path: Path) -> None:
     def fail(phase: str, done: int, total: int) -> None:
-        if phase == exporting.PACKING:
+        if (phase, done) == (exporting.FRAMES, total):
             raise OSError("disk full")
 
     with pytest.raises(OSError):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
+from functools import cache
 
 import numpy as np
 
 from gtm_hit.formats.pom import PomHeader, write_pom
-from gtm_hit.formats.wildtrack_json import PersonPosition, frame_json
+from gtm_hit.formats.wildtrack_json import extra_text, joined, person_texts
 from gtm_hit.geometry.cylinder import FootRule
 from gtm_hit.models import Annotation
 from gtm_hit.ops.export_calibrations import calibration_files
@@ -80,13 +81,11 @@ def write_rectangles(target: Target, name: str, headed: bool) -> None:
 def frames_json(chunk: Chunk) -> list[tuple[int, bytes]]:
     """Frame numbers and the bytes of their files."""
     shown = np.where(chunk.visible[:, :, None], chunk.boxes, np.int16(-1))
-    columns = zip(chunk.persons.tolist(), chunk.positions.tolist(), shown, _extras(chunk), strict=True)
-    people = [PersonPosition(*values) for values in columns]
-    cameras = chunk.boxes.shape[1]
-    return [(number, frame_json(people[rows], cameras)) for number, rows in chunk.by_frame()]
+    people = person_texts(chunk.persons, chunk.positions, shown, _extras(chunk))
+    return [(number, joined(people[rows])) for number, rows in chunk.by_frame()]
 
 
-def _extras(chunk: Chunk) -> list[dict[str, Any]]:
+def _extras(chunk: Chunk) -> Iterator[str]:
     """What follows the published keys of a person: metres, an own size, where the position came from."""
     columns = zip(
         chunk.xy.tolist(),
@@ -96,17 +95,22 @@ def _extras(chunk: Chunk) -> list[dict[str, Any]]:
         chunk.origins,
         strict=True,
     )
-    return [_extra(*values) for values in columns]
+    validated = str(Annotation.State.VALIDATED)
+    for (x, y), height, radius, state, origin in columns:
+        # NaN is the only number that differs from itself.
+        sizes = [size for size in (height, radius) if size == size]
+        yield _extra(height == height, radius == radius, origin, state == validated) % (x, y, *sizes)
 
 
-def _extra(xy: list[float], height: float, radius: float, state: str, origin: str) -> dict[str, Any]:
-    keys: dict[str, Any] = {"x": xy[0], "y": xy[1]}
-    # NaN is the only number that differs from itself.
-    if height == height:
-        keys["height"] = height
-    if radius == radius:
-        keys["radius"] = radius
+@cache
+def _extra(height: bool, radius: bool, origin: str, validated: bool) -> str:
+    """With `%r` for every number; of the same keys there are few kinds and very many people."""
+    keys: dict[str, object] = {"x": "%r", "y": "%r"}
+    if height:
+        keys["height"] = "%r"
+    if radius:
+        keys["radius"] = "%r"
     keys["origin"] = origin
-    if state != Annotation.State.VALIDATED:
+    if not validated:
         keys["validated"] = False
-    return keys
+    return extra_text(keys).replace('"%r"', "%r")
