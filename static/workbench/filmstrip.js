@@ -1,15 +1,14 @@
 import { predictPeople } from "./carry.js";
-import { bestViews, cropAround } from "./crops.js";
+import { paintCrop } from "./crop_paint.js";
+import { bestViews } from "./crops.js";
 import { element, setText } from "./dom.js";
 import { between } from "./keyframes.js";
-import { LOOKS, lookOf } from "./looks.js";
 import { gettext } from "./messages.js";
 
 const VIEWS = 3; // crops per frame
 const REACH = 5; // frames on each side of the open one, where all do not fit
 const GAP = 2; // CSS pixels between crops
 const HEAD = 16; // CSS pixels for the frame's number
-const MISSING = LOOKS.ghost; // where a person would be looked for
 
 /**
  * The selected person over all frames of the batch, in the three views that show the person best; a click goes
@@ -185,30 +184,6 @@ export class Filmstrip {
     ctx.setTransform(this._ratio, 0, 0, this._ratio, 0, 0);
     return ctx;
   }
-}
-
-function paintCrop(ctx, scene, cell, one, here) {
-  const { x, y, width, height, view, picture } = cell;
-  const box = one && scene.rectangles(one)[view];
-  ctx.fillStyle = "rgba(127, 140, 152, 0.16)";
-  ctx.fillRect(x, y, width, height);
-  if (!box) return;
-  const crop = cropAround(box, width / height);
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(x, y, width, height);
-  ctx.clip();
-  if (picture) {
-    const scale = picture.width / scene.cameras[view].width;
-    ctx.drawImage(picture, crop.x * scale, crop.y * scale, crop.width * scale, crop.height * scale, x, y, width, height);
-  }
-  const zoom = height / crop.height;
-  const look = here ? lookOf(one, false) : MISSING;
-  ctx.setLineDash(look.dash);
-  ctx.lineWidth = 1;
-  ctx.strokeStyle = look.colour;
-  ctx.strokeRect(x + (box.xmin - crop.x) * zoom, y + (box.ymin - crop.y) * zoom, (box.xmax - box.xmin) * zoom, (box.ymax - box.ymin) * zoom);
-  ctx.restore();
 }
 
 function same(one, other) {

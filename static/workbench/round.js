@@ -35,9 +35,18 @@ export class Round {
 
   _enter() {
     this._panes.closeUp = true;
+    this._showWho();
     if (this._store.selection === null) this._selectNext();
     this._panes.zoom(true);
     if (this._store.selection === null) this._sayAllSeen();
+  }
+
+  /** Who needs it for the first time fetches it. */
+  async _showWho() {
+    if (this._who) return;
+    this._who = true;
+    const { WhoIs } = await import("./whois.js");
+    new WhoIs({ scene: this._actions.scene, store: this._store, images: this._walk.images, panes: this._panes });
   }
 
   _leave() {

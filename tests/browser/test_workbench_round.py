@@ -118,3 +118,39 @@ def test_f_goes_to_the_nearest_yellow_person_and_misses_nobody(bench: Callable[.
         assert there == min(left, key=lambda one: metres_apart(places[here], places[one]))
         left.discard(there)
     assert not left
+
+
+def test_close_up_every_view_shows_the_whole_person_and_the_number(bench: Callable[..., Bench]) -> None:
+    opened = yellow_frame(bench, people=2)
+    opened.press("Escape", "a")
+    opened.page.wait_for_load_state("networkidle")
+    view = best_view(opened.stored(1)[0].position)
+    assert opened.selected() == "1"
+    close = corner(opened, view)
+    opened.press("Escape")
+    opened.press("z")
+    opened.painted()
+    assert corner(opened, view)["painted"] == 0
+    assert close["painted"] > 3000
+    assert close["cyan"] > 10  # the number
+
+
+def corner(opened: Bench, view: int) -> dict[str, int]:
+    """What is drawn in the upper right corner of a view, over the picture."""
+    opened.painted()
+    found: dict[str, int] = (
+        pane_of(opened.page, view)
+        .locator(".pane-marks")
+        .evaluate(
+            """(canvas) => {
+            const {data} = canvas.getContext("2d").getImageData(canvas.width - 150, 4, 144, 110);
+            let [painted, cyan] = [0, 0];
+            for (let i = 0; i < data.length; i += 4) {
+                if (data[i + 3] > 150) painted += 1;
+                if (data[i] < 70 && data[i + 1] > 200 && data[i + 2] > 220) cyan += 1;
+            }
+            return {painted, cyan};
+        }"""
+        )
+    )
+    return found
