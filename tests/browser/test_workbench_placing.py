@@ -224,6 +224,38 @@ def test_earlier_frames_keep_their_height(bench: Callable[..., Bench]) -> None:
     assert [(one.height, one.radius) for one in opened.stored(2)] == [(None, None)] * 2
 
 
+def test_the_boxes_follow_a_width_exactly(bench: Callable[..., Bench]) -> None:
+    """Where the painted box ends in a view is where the rule puts the end of the wider cylinder."""
+    opened = bench(people=1).open()
+    position = opened.stored()[0].position
+    view = best_view(position)
+    opened.press("Tab", *["]"] * 8)
+    all_saved(opened)
+    radius = opened.stored()[0].radius
+    assert radius == pytest.approx(CYLINDER.radius + 0.08)
+    wide = Cylinder(radius=radius, height=CYLINDER.height)
+    boxes, _visible = rectangles(cameras()[view], GRID, wide, FootRule.CORNERS, np.array([position]))
+    pane = opened.pane(view)
+    bounds = pane.bounding_box()
+    assert bounds is not None
+    scale = min(bounds["width"] / 1920, bounds["height"] / 1080)
+    left = (bounds["width"] - 1920 * scale) / 2
+    across = pane.locator(".pane-marks").evaluate(
+        """(canvas, [r, g, b]) => {
+            const {data, width} = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+            const xs = [];
+            for (let i = 0; i < data.length; i += 4) {
+                const off = Math.hypot(data[i] - r, data[i + 1] - g, data[i + 2] - b);
+                if (data[i + 3] > 200 && off < 20) xs.push((i / 4) % width);
+            }
+            return [Math.min(...xs), Math.max(...xs)];
+        }""",
+        list(CYAN),
+    )
+    xmin, _ymin, xmax, _ymax = (int(value) for value in boxes[0])
+    assert across == pytest.approx([left + xmin * scale, left + xmax * scale], abs=6)
+
+
 def test_the_usual_size_is_not_stored_as_a_size_of_ones_own(bench: Callable[..., Bench]) -> None:
     opened = bench(people=1).open()
     opened.press("Tab", "Shift+BracketRight", "Shift+BracketLeft", "ArrowLeft")

@@ -63,6 +63,22 @@ def test_people_walk_in_from_the_accepted_batch_before_under_their_numbers(
         assert metres_apart(one.position, int(truth)) < 0.1
 
 
+def test_working_backwards_people_walk_in_from_the_accepted_batch_after(
+    bench: Callable[..., Bench],
+) -> None:
+    opened = bench(people=2, frames=20, marked=False)
+    second = assignments.claim(workers.enter("link", "second"), opened.street.dataset)
+    for index in range(10, 12):
+        annotate(second, opened.street.frames[index], opened.street.truth[index])
+    finish(second)
+    Assignment.objects.filter(pk=second.pk).update(state=Assignment.State.ACCEPTED)
+    opened.open()
+    frame_cell(opened, 10).click()
+    expect(opened.page.locator('.people li[data-state="carried"]')).to_have_count(2)
+    for one, truth in zip(opened.stored(9), opened.street.truth[9], strict=True):
+        assert metres_apart(one.position, int(truth)) < 0.1
+
+
 def test_guesses_are_made_anew_when_more_is_known(bench: Callable[..., Bench]) -> None:
     """Looked at too early, the third frame had only the first to go by."""
     opened = bench(people=1).open()

@@ -6,9 +6,10 @@ import re
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, Route, expect
 
-from tests.browser.bench import Bench, pane_of, well_seen
+from gtm_hit.models import Image
+from tests.browser.bench import Bench, best_view, pane_of, well_seen
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -146,6 +147,62 @@ def test_escape_closes_the_menu_of_views_and_keys_annotate_again(bench: Callable
     expect(opened.page.locator(".views-menu")).to_be_hidden()
     opened.press("Tab")
     assert opened.selected() == "1"
+
+
+def test_zooming_fetches_the_full_picture_and_shows_it(bench: Callable[..., Bench]) -> None:
+    opened = bench(people=1).open()
+    view = best_view(opened.stored()[0].position)
+    expect(opened.pane(view)).to_have_attribute("data-picture", "ready")
+    full = Image.objects.get(frame=opened.street.frames[0], camera__index=view).full_digest
+    held: list[Route] = []
+    opened.page.route(re.compile(full), lambda route: held.append(route))
+    opened.press("Tab")
+    with opened.page.expect_request(re.compile(full)):
+        opened.press("z")
+        opened.pane(view).hover()
+        opened.page.mouse.wheel(0, -500)
+    soft = picture_of(opened, view)
+    for route in held:
+        route.continue_()
+    opened.page.wait_for_function(
+        """([view, soft]) => document.querySelector(`[data-view="camera-${view}"] .pane-picture`)
+            .toDataURL() !== soft""",
+        arg=[view, soft],
+    )
+
+
+def test_the_wheel_zooms_around_the_pointer_and_a_drag_pans(bench: Callable[..., Bench]) -> None:
+    opened = bench(people=1, marked=False).open()
+    pane = opened.pane(0)
+    bounds = pane.bounding_box()
+    assert bounds is not None
+    x, y = bounds["x"] + bounds["width"] / 2, bounds["y"] + bounds["height"] * 0.2  # the horizon
+    opened.page.mouse.move(x, y)
+    opened.page.mouse.wheel(0, -400)
+    opened.painted()
+    assert float(pane.get_attribute("data-zoom") or 0) == pytest.approx(2.718, abs=0.05)
+    before = picture_of(opened, 0)
+    opened.page.mouse.down()
+    opened.page.mouse.move(x + 90, y - 30, steps=4)
+    opened.page.mouse.up()
+    assert picture_of(opened, 0) != before
+    assert opened.rows() == []
+
+
+def picture_of(opened: Bench, view: int) -> str:
+    opened.painted()
+    return str(opened.pane(view).locator(".pane-picture").evaluate("(canvas) => canvas.toDataURL()"))
+
+
+def test_the_page_is_dark_until_the_reader_wants_it_light(bench: Callable[..., Bench]) -> None:
+    opened = bench(people=1).open()
+    brightness = """() => getComputedStyle(document.body).backgroundColor.match(/[0-9]+/g).slice(0, 3)
+        .reduce((sum, one) => sum + Number(one), 0)"""
+    assert opened.page.evaluate(brightness) < 150
+    opened.page.get_by_role("button", name="Dark or light").click()
+    assert opened.page.evaluate(brightness) > 600
+    opened.open()
+    assert opened.page.evaluate(brightness) > 600
 
 
 def test_boxes_and_numbers_fade_by_the_settings(bench: Callable[..., Bench]) -> None:
