@@ -36,6 +36,6 @@ function mouseRows() {
     [gettext("Wheel"), gettext("zoom this view")],
     [gettext("Drag"), gettext("move the zoomed picture; with the middle button also over a person")],
     [gettext("Double click"), gettext("this view large with the others around it, and back")],
-    [gettext("Touch"), gettext("tap: as a click; one finger moves the picture, two zoom it")],
+    [gettext("Touch"), gettext("tap: as a click; long press: move the selected person here; one finger moves the picture, two zoom it")],
   ];
 }
