@@ -93,8 +93,12 @@ def _first(keys: list[Ids]) -> Ids:
     """The row, (N,), in which each row's keys stand first."""
     if not len(keys[0]):
         return np.zeros(0, dtype=np.int64)
-    _, rows, groups = np.unique(np.column_stack(keys), axis=0, return_index=True, return_inverse=True)
-    return rows[groups.ravel()]
+    order = np.lexsort(keys)  # keeps the order of equal rows: the first of a group is the first of all
+    begins = np.ones(len(order), dtype=bool)
+    begins[1:] = np.any([key[order[1:]] != key[order[:-1]] for key in keys], axis=0)
+    first = np.empty(len(order), dtype=np.int64)
+    first[order] = order[begins][np.cumsum(begins) - 1]
+    return first
 
 
 def _repetitions(first: Ids) -> list[tuple[int, int]]:

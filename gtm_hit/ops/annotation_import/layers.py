@@ -75,7 +75,7 @@ def import_annotations(
         raise ImportFailed((Problem(source.path.name, "", "holds no annotation of this dataset"),))
     confirm()
     report(WRITING, 0, 1)
-    frames = len(np.unique([*people.frames.tolist(), *people.empty]))
+    frames = len(np.union1d(people.frames, np.array(people.empty, dtype=np.int64)))
     try:
         with transaction.atomic():
             layer = Layer.objects.create(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from array import array
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -54,15 +55,16 @@ def read_wildtrack(path: Path, scene: Scene, report: Report) -> People:
         problems.add("", "no JSON files in this folder")
     # Positions off the grid are told later, person by person.
     anywhere = Grid(MOST_ID, 1, 1.0, 0.0, 0.0)
-    frames = []
+    found = _Rows(scene)
     for done, file in enumerate(files.values(), start=1):
         try:
-            frames.append(read_frame(file, anywhere, len(scene.cameras), views_required=False, repeated=True))
+            frame = read_frame(file, anywhere, len(scene.cameras), views_required=False, repeated=True)
+            found.add(done - 1, frame)
         except FormatError as error:
             problems.extend(error.problems)
         report(READING, done, len(files))
     problems.raise_if_any()
-    return _people_of(frames, list(files.values()), scene)
+    return found.people(list(files.values()))
 
 
 def read_csv_metres(path: Path, scene: Scene, report: Report) -> People:
@@ -144,26 +146,37 @@ READERS: Mapping[str, Callable[[Path, Scene, Report], People | Boxes]] = {
 }
 
 
-def _people_of(frames: Sequence[FrameAnnotations], paths: list[Path], scene: Scene) -> People:
-    offset, usual = scene.dataset.annotation_offset, scene.dataset.cylinder
-    rows: list[tuple[int, int, int, int, int]] = []
-    sizes: list[tuple[float, float]] = []
-    for file, frame in enumerate(frames):
+class _Rows:
+    """People of file after file, in a few dozen bytes each: a long dataset has a million."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.offset, self.usual = scene.dataset.annotation_offset, scene.dataset.cylinder
+        self.ids = array("q")  # frame, person, position, file, entry
+        self.sizes = array("d")  # height, radius
+        self.empty: list[int] = []
+
+    def add(self, file: int, frame: FrameAnnotations) -> None:
+        number = frame.number - self.offset
+        if not frame.people:
+            self.empty.append(number)
         for entry, person in enumerate(frame.people):
-            rows.append((frame.number - offset, person.person, person.position, file, entry))
-            size = cylinder_of(person, usual) if person.extra else usual
-            sizes.append((size.height, size.radius))
-    columns = np.array(rows, dtype=np.int64).reshape(-1, 5).T
-    heights, radii = np.array(sizes, dtype=np.float64).reshape(-1, 2).T
-    return People(
-        frames=columns[0],
-        persons=columns[1],
-        positions=columns[2],
-        heights=np.where(heights == usual.height, np.nan, heights),
-        radii=np.where(radii == usual.radius, np.nan, radii),
-        sources=Sources(paths, columns[3], columns[4], "entry {}"),
-        empty=[frame.number - offset for frame in frames if not frame.people],
-    )
+            own = "height" in person.extra or "radius" in person.extra
+            size = cylinder_of(person, self.usual) if own else self.usual
+            self.ids.extend((number, person.person, person.position, file, entry))
+            self.sizes.extend((size.height, size.radius))
+
+    def people(self, paths: list[Path]) -> People:
+        ids = np.frombuffer(self.ids, dtype=np.int64).reshape(-1, 5)
+        heights, radii = np.frombuffer(self.sizes, dtype=np.float64).reshape(-1, 2).T
+        return People(
+            frames=ids[:, 0],
+            persons=ids[:, 1],
+            positions=ids[:, 2],
+            heights=np.where(heights == self.usual.height, np.nan, heights),
+            radii=np.where(radii == self.usual.radius, np.nan, radii),
+            sources=Sources(paths, ids[:, 3], ids[:, 4], "entry {}"),
+            empty=self.empty,
+        )
 
 
 def _only(path: Path, suffix: str) -> Path:

@@ -81,7 +81,9 @@ def people(frames: Ids, persons: Ids | None, positions: Ids, sources: Sources) -
 
 
 def _taken(table: People | Boxes, rows: NDArray) -> dict[str, Any]:
-    """Every column of the table at these rows."""
+    """Every column of the table at these rows; the same arrays where these are all rows."""
+    if rows.dtype == bool and rows.all():
+        return {}
     columns = {each.name: getattr(table, each.name) for each in fields(table)}
     return {name: column[rows] for name, column in columns.items() if isinstance(column, np.ndarray)} | {
         "sources": table.sources.take(rows)

@@ -10,9 +10,11 @@ from gtm_hit.geometry.camera import Camera as CalibratedCamera
 from gtm_hit.models import Annotation, Camera, Dataset, Frame, Image, Layer, LayerFrame, Save
 from gtm_hit.ops.images import Derivatives
 from gtm_hit.ops.importing.annotations import ImportedFrame
+from gtm_hit.ops.importing.insert import insert
 from gtm_hit.ops.importing.pictures import Key
 
 ROWS_AT_ONCE = 2000
+ROW = ("person", "position", "state", "origin", "height", "radius")
 FRAMES_AT_ONCE = 500  # with all their people in memory
 
 
@@ -90,9 +92,14 @@ def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
         ],
         batch_size=ROWS_AT_ONCE,
     )
-    Annotation.objects.bulk_create(
-        [Annotation(layer=layer, frame=frames[each.number], **row) for each in imported for row in each.rows],
-        batch_size=ROWS_AT_ONCE,
+    insert(
+        Annotation,
+        ("layer_id", "frame_id", *ROW),
+        (
+            (layer.pk, frames[each.number].pk, *(row[name] for name in ROW))
+            for each in imported
+            for row in each.rows
+        ),
     )
     largest = max((row["person"] for each in imported for row in each.rows), default=0)
     Layer.objects.filter(pk=layer.pk, last_person__lt=largest).update(last_person=largest)
