@@ -129,7 +129,7 @@ def person_texts(
     ids = np.column_stack((persons, positions))
     if ids.size and ids.min() < 0:
         raise ValueError("persons and positions are not negative")
-    numbers = np.concatenate((ids, boxes.reshape(len(boxes), -1)), axis=1)
+    numbers = np.concatenate((ids, boxes.reshape(len(boxes), 4 * boxes.shape[1])), axis=1)
     return [template % (*row, extra) for row, extra in zip(numbers.tolist(), extras, strict=True)]
 
 

@@ -78,6 +78,14 @@ def test_only_frames_that_were_saved_become_files(layer: Layer, tmp_path: Path) 
     assert people(folder, 10) == []
 
 
+def test_frames_with_nobody_are_empty_lists(dataset: Dataset, tmp_path: Path) -> None:
+    layer = make_layer(dataset)
+    save(layer, 0, [])
+    save(layer, 5, [])
+    folder = export(layer, tmp_path / "out")
+    assert [people(folder, number) for number in (0, 5)] == [[], []]
+
+
 def test_a_person_has_the_published_keys_first_and_the_tables_rectangles(
     layer: Layer, tmp_path: Path
 ) -> None:
