@@ -20,6 +20,11 @@ app.conf.beat_schedule = {
         "schedule": 10.0,
         "options": {"expires": 9},
     },
+    "expire-exports": {
+        "task": "gtm_hit.tasks.expire_exports",
+        "schedule": 3600.0,
+        "options": {"expires": 3599},
+    },
     "expire-leases": {
         "task": "gtm_hit.tasks.expire_leases",
         "schedule": 60.0,

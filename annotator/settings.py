@@ -89,6 +89,8 @@ TABLES_ROOT = DATA_DIR / "tables"  # rectangle tables, by digest; memory-mapped,
 EXPORTS_ROOT = DATA_DIR / "exports"
 RELEASES_ROOT = DATA_DIR / "releases"
 INCOMING_ROOT = DATA_DIR / "incoming"  # folders and videos put on the server for import
+# Days until the files of an export are removed; 0: never. Releases are never removed.
+EXPORT_KEEP_DAYS = environment.integer("EXPORT_KEEP_DAYS", 30, minimum=0, maximum=36_500)
 UPLOADS_ROOT = DATA_DIR / "uploads"  # archives that came through the browser
 MAX_UPLOAD_MB = environment.integer("MAX_UPLOAD_MB", 2048, minimum=1, maximum=1_000_000)
 STORAGES = {

@@ -7,8 +7,10 @@ from typing import Any
 from django.db.models import QuerySet
 from django.http import FileResponse, Http404
 from django.utils.translation import gettext as _
+from django.utils.translation import gettext_lazy
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
+from rest_framework.exceptions import APIException
 from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -17,8 +19,15 @@ from gtm_hit.api import shapes
 from gtm_hit.api.frames import refusal
 from gtm_hit.api.staff import ASKS, READS, Conflict, Pages, StaffView, answers, asked, caller
 from gtm_hit.models import ApiToken, Job
-from gtm_hit.ops import exporting, overview
+from gtm_hit.ops import export_expiry, exporting, overview
 from gtm_hit.ops import jobs as job_ops
+
+GONE = {
+    export_expiry.Removed.EXPIRED: gettext_lazy("This export has expired; retry the job to make it again."),
+    export_expiry.Removed.DELETED: gettext_lazy(
+        "The files of this export were deleted; retry the job to make it again."
+    ),
+}
 
 # Who may start such a job may stop it and start it again.
 SCOPES = {
@@ -66,6 +75,15 @@ class OneJob(StaffView):
         return Response(shapes.JobShape(job_or_404(pk)).data)
 
 
+class Gone(APIException):
+    status_code = 410
+    default_code = "removed"
+
+
+class NoFiles(Conflict):
+    default_code = "no_files"
+
+
 class JobAction(StaffView):
     @property
     def write_scope(self) -> ApiToken.Scope:  # type: ignore[override]
@@ -100,6 +118,20 @@ class RetryJob(JobAction):
         return started(job_ops.retry(job, caller(request)))
 
 
+class DeleteFiles(JobAction):
+    @extend_schema(
+        operation_id="delete_job_files",
+        summary="Remove the files of a finished export",
+        description="The job stays and can be done again. Releases cannot be removed.",
+        request=None,
+        responses=answers(200, shapes.JobShape, {**READS, 409: refusal("no_files")}),
+    )
+    def post(self, request: Request, pk: int) -> Response:
+        if not export_expiry.delete(job_or_404(pk)):
+            raise NoFiles(_("This job has no files to delete."))
+        return Response(shapes.JobShape(job_or_404(pk)).data)
+
+
 class Download(StaffView):
     """Archives are no JSON: a client that accepts zip only is right here."""
 
@@ -111,10 +143,17 @@ class DownloadJob(Download):
     @extend_schema(
         operation_id="download_job",
         summary="The zip of a finished export",
-        responses={(200, "application/zip"): OpenApiTypes.BINARY, **READS},
+        responses={
+            (200, "application/zip"): OpenApiTypes.BINARY,
+            **READS,
+            410: refusal("removed; the job can be done again"),
+        },
     )
     def get(self, request: Request, pk: int) -> FileResponse:
-        export = exporting.finished(job_or_404(pk))
+        job = job_or_404(pk)
+        if reason := export_expiry.removed(job):
+            raise Gone(GONE[reason])
+        export = exporting.finished(job)
         if export is None:
             raise Http404
         return FileResponse(export.archive.open("rb"), as_attachment=True, filename=export.archive_name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from typing import Any
 
 from drf_spectacular.utils import OpenApiExample, extend_schema_field, extend_schema_serializer
@@ -11,7 +12,8 @@ from gtm_hit.api.scene import image_url
 from gtm_hit.api.serializers import LARGEST, ImageRefSerializer
 from gtm_hit.metrics.matching import RADIUS
 from gtm_hit.models import Annotation, Assignment, Batch, Camera, Dataset, Frame, Job, Layer, Release
-from gtm_hit.ops import exporting
+from gtm_hit.ops import export_expiry, exporting
+from gtm_hit.ops.export_expiry import Removed
 from gtm_hit.ops.quality.comparing import LARGEST_RADIUS, Scope
 from gtm_hit.ops.quality.statistics import EVERY
 
@@ -183,17 +185,34 @@ class JobShape(serializers.ModelSerializer[Job]):
     result = serializers.DictField()
     created_by = serializers.CharField(source="created_by.username", default=None, allow_null=True)
     download = serializers.SerializerMethodField()
+    expires_at = serializers.SerializerMethodField()
+    removed = serializers.SerializerMethodField()
 
     class Meta:
         model = Job
         fields = [
             *("id", "dataset", "kind", "state", "done", "total", "message", "result", "attempts"),
             *("cancel_requested", "created_by", "created_at", "started_at", "finished_at", "download"),
+            *("expires_at", "removed"),
         ]
 
     @extend_schema_field(serializers.CharField(allow_null=True, help_text="address of an export's zip"))
     def get_download(self, job: Job) -> str | None:
         return f"/api/v1/jobs/{job.pk}/download/" if exporting.made_files(job) else None
+
+    @extend_schema_field(
+        serializers.DateTimeField(allow_null=True, help_text="when an export's files will be removed")
+    )
+    def get_expires_at(self, job: Job) -> datetime | None:
+        return export_expiry.expires_at(job)
+
+    @extend_schema_field(
+        serializers.ChoiceField(
+            choices=list(Removed), allow_null=True, help_text="why an export's files are gone"
+        )
+    )
+    def get_removed(self, job: Job) -> str | None:
+        return export_expiry.removed(job)
 
 
 class ReleaseShape(serializers.ModelSerializer[Release]):

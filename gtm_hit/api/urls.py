@@ -93,6 +93,7 @@ scripts: list[URLPattern | URLResolver] = [
     path("jobs/<int:pk>/cancel/", jobs.CancelJob.as_view()),
     path("jobs/<int:pk>/retry/", jobs.RetryJob.as_view()),
     path("jobs/<int:pk>/download/", jobs.DownloadJob.as_view()),
+    path("jobs/<int:pk>/delete-files/", jobs.DeleteFiles.as_view()),
 ]
 
 urlpatterns: list[URLPattern | URLResolver] = [

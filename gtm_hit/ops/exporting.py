@@ -172,7 +172,7 @@ def remove_dead_partials() -> None:
 
 def made_files(job: Job) -> bool:
     """Whether there is something to download, as far as the row knows."""
-    return job.state == Job.State.DONE and "folder" in job.result
+    return job.state == Job.State.DONE and "folder" in job.result and not job.result.get("removed")
 
 
 def finished(job: Job) -> Export | None:

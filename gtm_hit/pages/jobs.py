@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from django.conf import settings
 from django.contrib import messages
 from django.core.paginator import Paginator
 from django.http import FileResponse, Http404, HttpRequest, HttpResponse, JsonResponse
@@ -10,7 +11,7 @@ from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_POST, require_safe
 
 from gtm_hit.models import Job
-from gtm_hit.ops import exporting, overview
+from gtm_hit.ops import export_expiry, exporting, overview
 from gtm_hit.ops import jobs as job_ops
 from gtm_hit.pages.access import StaffRequest, staff_only
 
@@ -34,6 +35,9 @@ def job(request: HttpRequest, pk: int) -> HttpResponse:
         "job": shown,
         "percent": percent(shown),
         "export": export,
+        "removed": export_expiry.removed(shown),
+        "expires_at": export_expiry.expires_at(shown),
+        "keep_days": settings.EXPORT_KEEP_DAYS,
         "digests": export.files[:DIGESTS_SHOWN] if export else [],
         "more_digests": max(len(export.files) - DIGESTS_SHOWN, 0) if export else 0,
     }
@@ -78,10 +82,21 @@ def retry(request: StaffRequest, pk: int) -> HttpResponse:
 @require_safe
 @staff_only
 def download(request: HttpRequest, pk: int) -> HttpResponse | FileResponse:
-    export = exporting.finished(job_or_404(pk))
+    shown = job_or_404(pk)
+    if export_expiry.removed(shown):
+        return redirect("job", pk=pk)  # which says why, and offers to make it again
+    export = exporting.finished(shown)
     if export is None:
         raise Http404(_("This job has no file to download."))
     return FileResponse(export.archive.open("rb"), as_attachment=True, filename=export.archive_name)
+
+
+@require_POST
+@staff_only
+def delete_files(request: HttpRequest, pk: int) -> HttpResponse:
+    if not export_expiry.delete(job_or_404(pk)):
+        messages.warning(request, _("This job has no files to delete."))
+    return redirect("job", pk=pk)
 
 
 @require_safe
@@ -105,4 +120,5 @@ urlpatterns = [
     path("jobs/<int:pk>/cancel/", cancel, name="job-cancel"),
     path("jobs/<int:pk>/retry/", retry, name="job-retry"),
     path("jobs/<int:pk>/download/", download, name="job-download"),
+    path("jobs/<int:pk>/delete-files/", delete_files, name="job-delete-files"),
 ]

@@ -143,6 +143,20 @@ def test_an_export_is_downloaded_when_it_is_done(truth: Layer) -> None:
     assert bearer("release").get(address + "download/").status_code == 403
 
 
+def test_files_that_were_deleted_are_gone_in_plain_words(truth: Layer) -> None:
+    script = bearer("read", "release")
+    address = f"/api/v1/jobs/{run(script.post(BASE + 'layers/truth/exports/', {'formats': ['csv']})).pk}/"
+    assert script.get(address).json()["expires_at"]
+    assert bearer("read", "work").post(address + "delete-files/").status_code == 403
+    gone = script.post(address + "delete-files/").json()
+    assert (gone["removed"], gone["download"], gone["expires_at"]) == ("deleted", None, None)
+    refused = script.get(address + "download/")
+    assert (refused.status_code, refused.json()["code"]) == (410, "removed")
+    again = script.post(address + "delete-files/")
+    assert (again.status_code, again.json()["code"]) == (409, "no_files")
+    assert script.post(address + "retry/").status_code == 202
+
+
 def test_a_release_is_listed_and_downloaded_when_it_is_done() -> None:
     script = bearer("read", "release")
     assert run(script.post(BASE + "releases/", {**RELEASE, "formats": ["csv"]})).result["release"] == 1

@@ -13,7 +13,7 @@ from django.test.utils import CaptureQueriesContext
 from django.utils import timezone
 
 from gtm_hit.models import Assignment, Batch, Dataset, Job, Layer, LayerFrame
-from gtm_hit.ops import assignments, batches, exporting, jobs
+from gtm_hit.ops import assignments, batches, export_expiry, exporting, jobs
 from tests.work_scene import add_frames, make_dataset, make_layer, make_worker
 
 PAGES = [
@@ -31,6 +31,7 @@ FORMS = [
     "/datasets/square/layers/own/export/",
     "/jobs/{job}/cancel/",
     "/jobs/{job}/retry/",
+    "/jobs/{job}/delete-files/",
 ]
 
 
@@ -249,6 +250,26 @@ def test_the_job_page_follows_the_job(staff: Client, job: Job) -> None:
     run.fail("The disk is full.")
     page = text(staff.get(address))
     assert "The disk is full." in page and "Try again" in page and "http-equiv" not in page
+
+
+def test_an_expired_export_says_so_and_is_made_again(staff: Client, job: Job) -> None:
+    jobs.run(job.pk, {job.kind: exporting.run})
+    assert "Files kept until" in text(staff.get(f"/jobs/{job.pk}/"))
+    export_expiry.expire(timezone.now() + timedelta(days=31))
+    page = text(staff.get(f"/jobs/{job.pk}/download/", follow=True))
+    assert "kept for 30 days" in page and "Make it again" in page
+    assert staff.post(f"/jobs/{job.pk}/retry/").url != f"/jobs/{job.pk}/"
+
+
+def test_the_files_of_an_export_can_be_deleted(staff: Client, job: Job) -> None:
+    jobs.run(job.pk, {job.kind: exporting.run})
+    assert "Delete files" in text(staff.get(f"/jobs/{job.pk}/"))
+    page = text(staff.post(f"/jobs/{job.pk}/delete-files/", follow=True))
+    assert "were deleted" in page and "Delete files" not in page
+
+
+def test_a_job_without_files_says_that_there_are_none(staff: Client, job: Job) -> None:
+    assert "no files to delete" in text(staff.post(f"/jobs/{job.pk}/delete-files/", follow=True))
 
 
 def test_a_finished_export_can_be_downloaded(staff: Client, job: Job) -> None:

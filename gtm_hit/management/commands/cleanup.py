@@ -1,0 +1,24 @@
+from __future__ import annotations
+
+from typing import Any
+
+from django.conf import settings
+from django.core.management.base import BaseCommand
+from django.utils import timezone
+
+from gtm_hit.ops import export_expiry, exporting, uploads
+
+
+class Command(BaseCommand):
+    help = (
+        "Remove the files of exports older than EXPORT_KEEP_DAYS, archives nobody imported for a week, and "
+        "unfinished work of killed workers. The Celery beat does the same every hour. Releases always stay."
+    )
+
+    def handle(self, *args: Any, **options: Any) -> None:
+        exporting.remove_dead_partials()
+        uploads.remove_leftovers()
+        count = export_expiry.expire(timezone.now())
+        days = settings.EXPORT_KEEP_DAYS
+        kept = f"exports are kept for {days} days" if days else "exports are kept for ever"
+        self.stdout.write(f"{count} expired exports removed; {kept}.")
