@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
-from django.core.files.uploadedfile import UploadedFile
 from django.http import Http404
 from django.utils.translation import gettext as _
 from drf_spectacular.types import OpenApiTypes
@@ -31,7 +28,6 @@ from gtm_hit.api.staff import (
     invalid,
     layer_named,
 )
-from gtm_hit.formats.files import write_bytes
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.metrics.annotations import MetricsError
 from gtm_hit.metrics.matching import RADIUS
@@ -157,10 +153,7 @@ class EvaluationFrame(StaffView):
 
 class TextFilesParser(BoundedMultiPartParser):
     def most_bytes(self) -> int:
-        return 2 * MOST_TEXT
-
-
-MOST_TEXT = 2_000_000  # bytes of a file, about 5,000 frames; `manage.py evaluate` takes longer ones
+        return 2 * text_files.MOST_UPLOADED
 
 
 class TextFilesSerializer(serializers.Serializer[Any]):
@@ -173,8 +166,10 @@ class TextFilesSerializer(serializers.Serializer[Any]):
 
     def validate(self, given: dict[str, Any]) -> dict[str, Any]:
         for side in ("truth", "found"):
-            if given[side].size > MOST_TEXT:
-                reason = _("The file is larger than %(size)d MB.") % {"size": MOST_TEXT // 1_000_000}
+            if given[side].size > text_files.MOST_UPLOADED:
+                reason = _("The file is larger than %(size)d MB.") % {
+                    "size": text_files.MOST_UPLOADED // 1_000_000
+                }
                 raise invalid(side, reason)
         return given
 
@@ -193,21 +188,12 @@ class TextFiles(StaffView):
     )
     def post(self, request: Request) -> Response:
         wanted = valid(TextFilesSerializer(data=request.data))
-        with TemporaryDirectory(prefix="evaluation-") as name:
-            folder = Path(name)
-            for side in ("truth", "found"):
-                wanted[side] = kept(folder / f"{side}.txt", wanted[side])
-            try:
-                return Response(text_files.evaluate(text_files.Question(**wanted)))
-            except MetricsError as error:
-                raise invalid("", error) from error
-            except FormatError as error:
-                raise refused("", error.relative_to(folder)) from error
-
-
-def kept(path: Path, file: UploadedFile) -> Path:
-    write_bytes(path, file.read())
-    return path
+        try:
+            return Response(text_files.evaluate_uploads(**wanted))
+        except MetricsError as error:
+            raise invalid("", error) from error
+        except FormatError as error:
+            raise refused("", error) from error
 
 
 class PairSerializer(serializers.Serializer[Any]):

@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import Path, PurePosixPath
+from tempfile import TemporaryDirectory
 from uuid import uuid4
 
 from django.conf import settings
@@ -184,17 +185,35 @@ def unpacked(source: Source, job: Job, progress: Progress) -> Iterator[Path]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
+@contextmanager
+def extracted(path: Path, progress: Progress) -> Iterator[Path]:
+    """A folder as it is, or what is in a zip, which is gone afterwards; checked as an upload is."""
+    if path.is_dir() or path.suffix.lower() != ".zip":
+        yield path
+        return
+    settings.UPLOADS_ROOT.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory(prefix=".extracted-", dir=settings.UPLOADS_ROOT) as name:
+        folder = Path(name)
+        unpack(path, folder, progress)
+        yield dataset_folder(folder)
+
+
 def remove_leftovers() -> None:
-    """What killed workers unpacked, and archives nobody imported for a week."""
+    """What killed workers and commands unpacked, and archives nobody imported for a week."""
     if not settings.UPLOADS_ROOT.is_dir():
         return
     running = set(Job.objects.filter(state=Job.State.RUNNING).values_list("pk", "attempts"))
     oldest = (timezone.now() - KEPT).timestamp()
     for path in settings.UPLOADS_ROOT.iterdir():
         match = _UNPACKED.fullmatch(path.name)
-        if match and (int(match["job"]), int(match["attempt"])) not in running:
+        old = path.stat().st_mtime < oldest
+        if match:
+            abandoned = (int(match["job"]), int(match["attempt"])) not in running
+        else:
+            abandoned = path.is_dir() and path.name[0] == "." and old
+        if abandoned:
             shutil.rmtree(path, ignore_errors=True)
-        elif path.is_file() and path.stat().st_mtime < oldest and not running:
+        elif path.is_file() and old and not running:
             path.unlink(missing_ok=True)
 
 

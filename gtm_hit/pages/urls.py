@@ -14,6 +14,7 @@ from gtm_hit.pages import (
     layers,
     releases,
     statistics,
+    text_files,
     tokens,
     work,
 )
@@ -27,6 +28,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *releases.urlpatterns,
     *statistics.urlpatterns,
     *compare.urlpatterns,
+    *text_files.urlpatterns,
     *jobs.urlpatterns,
     *imports.urlpatterns,
     *calibration.urlpatterns,

@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+import io
 import shutil
+import zipfile
 from pathlib import Path
 from typing import Any
 
 import pytest
+from django.core.management import CommandError, call_command
 
 from gtm_hit.models import Dataset, Frame, Image, Job
 from gtm_hit.ops import import_jobs, jobs, uploads
@@ -151,4 +154,23 @@ def test_videos_outside_the_folder_are_refused(videos: uploads.Source, tmp_path:
     named = [import_jobs.VideoSource("C1", Path(path), 0.0)]
     job = done(import_jobs.start_videos(videos, options(), named))
     assert job.message == f"{path} does not lie in incoming/walk."
+    assert not Dataset.objects.exists()
+
+
+def test_the_command_takes_a_zip_as_well(tmp_path: Path) -> None:
+    make_folder(tmp_path / "square")
+    archive = shutil.make_archive(str(tmp_path / "square"), "zip", tmp_path, "square")
+    scene = ("--grid", "80x60", "--step", "0.1", "--origin=-4,-3", "--frame-rate", "10", "--frame-step", "5")
+    call_command("importdataset", "square", archive, *scene, stdout=io.StringIO())
+    assert Dataset.objects.get().frames.count() == 2
+    assert not list((tmp_path / "uploads").iterdir())
+
+
+def test_the_command_refuses_a_zip_that_leads_out_of_its_folder(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "evil.zip", "w") as archive:
+        archive.writestr("../evil", "x")
+    told = io.StringIO()
+    with pytest.raises(CommandError, match="1 problem; nothing was imported"):
+        call_command("importdataset", "evil", str(tmp_path / "evil.zip"), stdout=io.StringIO(), stderr=told)
+    assert "leads out of the archive" in told.getvalue()
     assert not Dataset.objects.exists()

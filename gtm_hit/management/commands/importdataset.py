@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
+from gtm_hit.formats.problems import FormatError
 from gtm_hit.geometry.cylinder import FootRule
 from gtm_hit.management.progress import ProgressLine
+from gtm_hit.ops import uploads
 from gtm_hit.ops.importing.calibrations import UNITS
 from gtm_hit.ops.importing.dataset import ImportFailed, ImportReport, import_dataset
 from gtm_hit.ops.importing.options import PRESETS, ImportOptions, SceneValues
@@ -20,8 +23,8 @@ Number = TypeVar("Number", int, float)
 
 class Command(BaseCommand):
     help = (
-        "Import a folder in the layout of WILDTRACK or MultiviewX. Everything is checked first; on any error "
-        "nothing is imported. A second run adds only frames and annotation files that are new."
+        "Import a folder, or a zip, in the layout of WILDTRACK or MultiviewX. Everything is checked first; "
+        "on any error nothing is imported. A second run adds only frames and annotation files that are new."
     )
 
     def run_from_argv(self, argv: list[str]) -> None:
@@ -36,7 +39,7 @@ class Command(BaseCommand):
 
     def add_arguments(self, parser: CommandParser) -> None:
         parser.add_argument("slug", help="the dataset's name in addresses, for example wildtrack")
-        parser.add_argument("folder", type=Path, help="the dataset's folder")
+        parser.add_argument("folder", type=Path, help="the dataset's folder, or a zip of it")
         parser.add_argument("--name", default="", help="the dataset's name in words (default: SLUG)")
         parser.add_argument(
             "--preset", choices=sorted(PRESETS), help="grid, cylinder and numbering of a published dataset"
@@ -47,9 +50,11 @@ class Command(BaseCommand):
 
     def handle(self, *args: object, **options: Any) -> None:
         progress = ProgressLine(self.stdout)
+        unpacking = partial(progress, "unpacking, MB")
         try:
-            report = import_dataset(read_options(options), progress)
-        except ImportFailed as error:
+            with uploads.extracted(options["folder"].absolute(), unpacking) as folder:
+                report = import_dataset(read_options({**options, "folder": folder}), progress)
+        except (ImportFailed, FormatError) as error:
             progress.finish()
             for problem in error.problems:
                 self.stderr.write(str(problem))

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+from django.core.files.uploadedfile import UploadedFile
 
 from gtm_hit.formats import frame_column_row
 from gtm_hit.formats.problems import FormatError, Problem
@@ -17,6 +19,7 @@ from gtm_hit.metrics.matching import RADIUS
 
 SCORES = ("moda", "modp", "precision", "recall", "radius")
 COUNTS = ("frames", "truth", "found", "matched", "missed", "extra")
+MOST_UPLOADED = 2_000_000  # bytes of a file, about 5,000 frames: longer ones keep a request waiting
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,19 @@ def evaluate(asked: Question) -> dict[str, Any]:
         scores = detection.curve(truth, found)
         result["curve"] = [{name: _plain(getattr(each, name)) for name in SCORES} for each in scores]
     return result
+
+
+def evaluate_uploads(truth: UploadedFile, found: UploadedFile, **asked: Any) -> dict[str, Any]:
+    """The same of files that came with a request; problems name them truth.txt and found.txt."""
+    with TemporaryDirectory(prefix="evaluation-") as name:
+        folder = Path(name)
+        paths = folder / "truth.txt", folder / "found.txt"
+        for path, file in zip(paths, (truth, found), strict=True):
+            path.write_bytes(file.read())
+        try:
+            return evaluate(Question(*paths, **asked))
+        except FormatError as error:
+            raise error.relative_to(folder) from error
 
 
 def _read_both(asked: Question) -> tuple[Annotations, Annotations]:
