@@ -74,7 +74,7 @@ export class CameraView {
     if (options.grid) {
       this._lines ??= gridLines(this._scene.cameras[this.index], this._scene.grid, 1);
       for (const line of this._lines) {
-        drawPath(ctx, onPane(line, transform), { colour: "rgba(255, 255, 255, 0.35)", width: 0.75 });
+        drawPath(ctx, onPane(line, transform), { colour: "rgba(255, 255, 255, 0.6)", width: 0.75, rim: "rgba(6, 12, 18, 0.15)" });
       }
     }
     if (options.outline) {

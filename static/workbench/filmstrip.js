@@ -4,6 +4,7 @@ import { bestViews } from "./crops.js";
 import { element, setText } from "./dom.js";
 import { between } from "./keyframes.js";
 import { gettext } from "./messages.js";
+import { unit } from "./unit.js";
 
 const VIEWS = 3; // crops per frame
 const REACH = 5; // frames on each side of the open one, where all do not fit
@@ -49,9 +50,9 @@ export class Filmstrip {
   }
 
   _resize() {
-    const { clientWidth: width, clientHeight: height } = this._canvas;
+    const [width, height] = [this._canvas.clientWidth / unit, this._canvas.clientHeight / unit];
     if (!width || !height) return;
-    this._ratio = window.devicePixelRatio || 1;
+    this._ratio = (window.devicePixelRatio || 1) * unit;
     Object.assign(this._canvas, { width: Math.round(width * this._ratio), height: Math.round(height * this._ratio) });
     this._room = { width, height };
     this._painted.clear();

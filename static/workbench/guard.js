@@ -39,8 +39,6 @@ export class Guard {
     const pane = this.panes.active;
     const foot = pane.view.box(person) && pane.view.foot(person);
     if (!foot) return null;
-    const { x, y } = pane.transform.toPane(foot.x, foot.y);
-    const bounds = pane.element.getBoundingClientRect();
-    return { x: bounds.left + x, y: bounds.top + y };
+    return pane.global(pane.transform.toPane(foot.x, foot.y));
   }
 }

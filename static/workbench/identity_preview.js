@@ -6,6 +6,7 @@ import { drawFoot, drawLabel, drawPath } from "./marks.js";
 import { gettext, ngettext } from "./messages.js";
 import { union } from "./regions.js";
 import { fit, focus } from "./transform.js";
+import { unit } from "./unit.js";
 
 const SIZE = { width: 400, height: 190 }; // CSS pixels
 const AROUND = 1; // metres around the paths
@@ -80,7 +81,7 @@ function boundsOf(view, people) {
 }
 
 function drawn(view, bounds, mapColours, paths, current, title) {
-  const ratio = window.devicePixelRatio || 1;
+  const ratio = (window.devicePixelRatio || 1) * unit;
   const label = `${title}: ${paths.map(({ person, people }) => ngettext("person {person} in {n} frame", "person {person} in {n} frames", people.length, { person })).join(", ")}`;
   const canvas = element("canvas", { width: SIZE.width * ratio, height: SIZE.height * ratio, role: "img", "aria-label": label });
   const ctx = canvas.getContext("2d");

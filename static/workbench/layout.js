@@ -2,10 +2,12 @@
  * Equal panes as large as the room allows. Columns are chosen so that pictures come out largest; when the
  * last row has a cell to spare, the side panel takes it, otherwise the panel gets a column of its own.
  */
+import { unit } from "./unit.js";
+
 const GAP = 2;
-const PANEL = 248; // px, a panel column
+const PANEL = 248; // units, a panel column
 const SMALL_COUNT = 2; // how much their width is worth against the large one's: they are to be read, too
-const PANEL_CELL = 300; // px, the smallest cell that can hold the panel
+const PANEL_CELL = 300; // units, the smallest cell that can hold the panel
 
 /** Pure. @returns {{columns, rows, panel: "cell"|"column", width, height}} of one pane */
 export function arrange(count, room, aspect, panelShown = true) {
@@ -69,7 +71,7 @@ export class Layout {
   }
 
   update() {
-    const { clientWidth: width, clientHeight: height } = this._container;
+    const [width, height] = [this._container.clientWidth / unit, this._container.clientHeight / unit];
     if (!width || !height) return;
     const { shown, all } = this._panes;
     const arrangement = (this._large ? arrangeAround : arrange)(shown.length, { width, height }, this._aspect);

@@ -7,7 +7,7 @@ export const CYAN = "#2fe3f7";
 export const WHITE = "#ffffff";
 export const YELLOW = "#ffd21f";
 export const HALO = "rgba(6, 12, 18, 0.75)";
-export const RIM = "rgba(6, 12, 18, 0.5)"; // thin, around every line: light lines stay visible on light pavement
+export const RIM = "rgba(6, 12, 18, 0.8)"; // thin, around every line: light lines stay visible on light pavement
 export const INK = "#08131a";
 
 export const LOOKS = {

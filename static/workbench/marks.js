@@ -11,7 +11,7 @@ export function drawBox(ctx, box, look, label, opacity = { box: 1, label: 1 }) {
   const [x, y] = [box.xmin, box.ymin];
   const [width, height] = [box.xmax - box.xmin, box.ymax - box.ymin];
   ctx.globalAlpha = opacity.box;
-  ctx.lineWidth = look.width + 1.5;
+  ctx.lineWidth = look.width + 2;
   ctx.strokeStyle = RIM;
   ctx.setLineDash([]);
   ctx.strokeRect(x, y, width, height);
@@ -67,14 +67,14 @@ export function drawFoot(ctx, x, y, look, radius) {
 }
 
 /** A closed or open line through points, light on a dark rim. */
-export function drawPath(ctx, points, { colour, width = 1.25, dash = [], closed = false }) {
+export function drawPath(ctx, points, { colour, width = 1.25, dash = [], closed = false, rim = HALO }) {
   if (points.length < 2) return;
   ctx.beginPath();
   points.forEach(({ x, y }, index) => (index ? ctx.lineTo(x, y) : ctx.moveTo(x, y)));
   if (closed) ctx.closePath();
   ctx.setLineDash([]);
   ctx.lineWidth = width + 2;
-  ctx.strokeStyle = HALO;
+  ctx.strokeStyle = rim;
   ctx.stroke();
   ctx.setLineDash(dash);
   ctx.lineWidth = width;

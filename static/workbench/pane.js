@@ -3,6 +3,7 @@ import { lookOf } from "./looks.js";
 import { gettext } from "./messages.js";
 import { damage, overlaps } from "./regions.js";
 import { clamped, fit, resized } from "./transform.js";
+import { unit } from "./unit.js";
 
 /**
  * One view on the screen: a canvas with the picture and a canvas with the marks. It paints what the model says
@@ -70,10 +71,16 @@ export class Pane {
     this._use(next, next.equals(fit(this.view.size, this.room)));
   }
 
-  /** A pointer event's place, in CSS pixels of the pane. */
+  /** A pointer event's place, in units of the pane. */
   local(event) {
     const bounds = this.element.getBoundingClientRect();
-    return { x: event.clientX - bounds.left, y: event.clientY - bounds.top };
+    return { x: (event.clientX - bounds.left) / unit, y: (event.clientY - bounds.top) / unit };
+  }
+
+  /** Where a place of the pane is in the window, in CSS pixels. */
+  global({ x, y }) {
+    const bounds = this.element.getBoundingClientRect();
+    return { x: bounds.left + x * unit, y: bounds.top + y * unit };
   }
 
   paint() {
@@ -108,8 +115,8 @@ export class Pane {
   }
 
   _resize() {
-    const { clientWidth: width, clientHeight: height } = this.element;
-    const ratio = window.devicePixelRatio || 1;
+    const [width, height] = [this.element.clientWidth / unit, this.element.clientHeight / unit];
+    const ratio = (window.devicePixelRatio || 1) * unit;
     const before = this.room;
     if (!width || !height || (width === before.width && height === before.height && ratio === this._ratio)) return;
     this._ratio = ratio;

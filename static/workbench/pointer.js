@@ -85,7 +85,7 @@ export class Pointer {
     clearTimeout(this._longPress);
     if (event.button === 2) return;
     if (this._fingers.down(pane, event)) return this._forget(pane); // a second finger: nothing is clicked, the picture is pinched
-    this._press = { pane, x: event.clientX, y: event.clientY, last: event, dragged: false, grip: this._gripOf(pane, event), holding: false };
+    this._press = { pane, at: pane.local(event), last: event, dragged: false, grip: this._gripOf(pane, event), holding: false };
     pane.element.setPointerCapture(event.pointerId);
     if (event.pointerType === "touch") this._longPress = setTimeout(() => this._onLongPress(pane, event), LONG);
   }
@@ -103,10 +103,12 @@ export class Pointer {
     const press = this._press;
     if (!press) return this._hover(pane, event);
     if (press.pane !== pane) return;
-    if (!press.dragged && Math.hypot(event.clientX - press.x, event.clientY - press.y) > STILL) this._beginDrag(press);
+    const at = pane.local(event);
+    if (!press.dragged && Math.hypot(at.x - press.at.x, at.y - press.at.y) > STILL) this._beginDrag(press);
     if (!press.dragged) return;
-    if (press.holding) return this._intents.drag(pane.local(event));
-    pane.look(pane.transform.moved(event.clientX - press.last.clientX, event.clientY - press.last.clientY));
+    if (press.holding) return this._intents.drag(at);
+    const last = pane.local(press.last);
+    pane.look(pane.transform.moved(at.x - last.x, at.y - last.y));
     press.last = event;
   }
 
