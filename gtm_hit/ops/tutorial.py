@@ -179,7 +179,7 @@ def judge_remove(exercise: Exercise, dataset: Dataset, rows: dict[int, Row]) -> 
         return Verdict(False, _("The box with nobody in it is still there."))
     kept = exercise.shown(0).keys() - {exercise.invented}
     if gone := sorted(kept - rows.keys()):
-        reason = _("Person %(person)d was a right one; undo with Ctrl+Z.")
+        reason = _("Person %(person)d was a right one; “Undo” brings them back.")
         return Verdict(False, reason % {"person": gone[0]})
     return Verdict(True, _("Right: nobody stood there."))
 
@@ -195,7 +195,7 @@ def judge_person(person: int, truth: Positions, dataset: Dataset, rows: dict[int
     """What is wrong with one person; None when nothing is."""
     row = rows.get(person)
     if row is None:
-        return Verdict(False, _("Person %(person)d is gone; undo with Ctrl+Z.") % {"person": person})
+        return Verdict(False, _("Person %(person)d is gone; “Undo” brings them back.") % {"person": person})
     off = float(between([row["position"]], [truth[person]], dataset.grid)[0, 0])
     if off > NEAR_ENOUGH:
         return Verdict(False, too_far(off))

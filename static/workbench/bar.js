@@ -1,6 +1,6 @@
 import { carriedOf } from "./annotation.js";
 import { element, setText } from "./dom.js";
-import { keyName, keyTable } from "./keys.js";
+import { titleFor } from "./keys.js";
 import { gettext, ngettext } from "./messages.js";
 import { saveWords } from "./save_words.js";
 
@@ -10,7 +10,6 @@ const THEME_KEY = "gtm-theme"; // shared with the ordinary pages
 export class Bar {
   constructor({ scene, store, saver, panes, perform, home, signIn }) {
     Object.assign(this, { scene, store, saver, panes });
-    this._keys = new Map(keyTable().map(({ id, keys, label }) => [id, { keys, label }]));
     this._perform = perform;
     this.element = this._build(home, signIn);
     store.on("change", () => this._later());
@@ -43,6 +42,7 @@ export class Bar {
     return element(
       "header",
       { className: "bar" },
+      element("h1", { className: "visually-hidden" }, gettext("Workbench")),
       element("a", { className: "home", href: home, title: gettext("Back") }, "‹ ", this.scene.assignment?.batch ?? this.scene.layer?.name ?? this.scene.dataset.name),
       this._button("previousFrame", "◀", { "aria-label": gettext("Previous frame") }),
       this._place,
@@ -62,14 +62,13 @@ export class Bar {
   }
 
   _button(id, text, properties = {}) {
-    const { keys, label } = this._keys.get(id);
     return element(
       "button",
       {
         type: "button",
         className: "quiet",
         "data-action": id,
-        title: `${label} (${keyName(keys[0])})`,
+        title: titleFor(id),
         ...properties,
         onclick: (event) => {
           this._perform(id);
@@ -90,6 +89,7 @@ export class Bar {
     const status = saver.status();
     const { text, link } = saveWords(status, saver.revision(store.current), this.scene.mode === "tutorial");
     setText(this._saved, text);
+    this._saved.title = text; // where there is no room for it
     setText(this._link, link ?? "");
     this._link.hidden = !link;
     this._saved.parentElement.dataset.save = status.kind;

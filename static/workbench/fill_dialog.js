@@ -1,6 +1,7 @@
 import { ask } from "./dialogs.js";
 import { element } from "./dom.js";
 import { extendEdits, fillEdits, keyframes } from "./keyframes.js";
+import { keyFor } from "./keys.js";
 import { LOOKS } from "./looks.js";
 import { gettext, ngettext } from "./messages.js";
 import { pathMap } from "./path_map.js";
@@ -21,7 +22,7 @@ export async function chooseFill(store, scene, mapColours, person) {
     body: [
       ...offers.map((offer) => describe(store, offer)),
       map,
-      gettext("Who is filled in stays yellow until looked at. Ctrl + Z takes all of it back."),
+      gettext("Who is filled in stays yellow until looked at. {key} takes all of it back.", { key: keyFor("undo") }),
     ],
     buttons: [
       ...offers.map(({ id, label }, index) => ({ id, label, main: index === 0 })),
@@ -55,8 +56,8 @@ function describe(store, { id, edits }) {
   const numbers = [...new Set(edits.map(({ frame }) => frame))].sort((one, other) => one - other);
   const places = numbers.map((number) => store.numbers.indexOf(number) + 1).join(", ");
   const sentence = {
-    between: () => gettext("On the straight line between the keyframes: frames {places}.", { places }),
-    further: () => gettext("And on, the way the person walks, to both ends of the batch: frames {places}.", { places }),
+    between: () => ngettext("On the straight line between the keyframes: frame {places}.", "On the straight line between the keyframes: frames {places}.", numbers.length, { places }),
+    further: () => ngettext("Further on, the way the person walks, as far as the batch goes: frame {places}.", "Further on, the way the person walks, as far as the batch goes: frames {places}.", numbers.length, { places }),
     all: () =>
       ngettext("Everybody between keyframes: {n} box in the frames {places}.", "Everybody between keyframes: {n} boxes in the frames {places}.", edits.length, { places }),
   }[id]();

@@ -2,6 +2,7 @@ import { byPerson } from "./annotation.js";
 import { NetworkError } from "./api.js";
 import * as commands from "./commands.js";
 import { element, setText } from "./dom.js";
+import { keyFor } from "./keys.js";
 import { LOOKS } from "./looks.js";
 import { same } from "./merge.js";
 import { gettext, ngettext } from "./messages.js";
@@ -74,7 +75,7 @@ export class FrameHistory {
     const patch = commands.restore(this.store, number, state, label);
     if (!patch.edits.length) return this.notices.say(gettext("The frame is like that already"));
     this.history.run(patch);
-    this.notices.say(gettext("Restored as it was in save {revision} – Ctrl + Z takes it back, and every save stays", { revision }));
+    this.notices.say(gettext("Restored as it was in save {revision} – {key} takes it back, and every save stays", { revision, key: keyFor("undo") }));
     this.open();
   }
 

@@ -48,7 +48,8 @@ export class Hints {
 function words(id) {
   return {
     moving: () =>
-      gettext("Arrow keys move the person by one position, with Shift by ten. {zoom} shows the feet large in all views, {help} all keys.", {
+      gettext("Arrow keys move the person by one position, {far} by ten. {zoom} shows the person large in all views, {help} all keys.", {
+        far: keyFor("leftFar"),
         zoom: keyFor("zoom"),
         help: keyFor("help"),
       }),

@@ -1,5 +1,6 @@
 import { NetworkError } from "./api.js";
 import { chooseIdentity } from "./identity_dialog.js";
+import { keyFor } from "./keys.js";
 import { gettext, ngettext } from "./messages.js";
 
 /** What an annotator does about who is who. Every row shows what it will change, then runs one command. */
@@ -39,7 +40,7 @@ export class IdentityActions {
     this.history.run(patch);
     const frames = new Set(patch.edits.map(({ frame }) => frame)).size;
     const where = ngettext("in {n} frame", "in {n} frames", frames);
-    this.notices.say(gettext("Done {where}: {label} – Ctrl + Z takes all of it back", { where, label: patch.label }));
+    this.notices.say(gettext("Done {where}: {label} – {key} takes all of it back", { where, label: patch.label, key: keyFor("undo") }));
   }
 
   /** Of a long layer only a piece is there, but a person may be anywhere in it. */

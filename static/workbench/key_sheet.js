@@ -1,5 +1,5 @@
 import { element, setText } from "./dom.js";
-import { chord, clash, groupTitle, keyName, keyTable } from "./keys.js";
+import { chord, clash, groupTitle, keyName, keyTable, titleFor } from "./keys.js";
 import { gettext } from "./messages.js";
 
 const MODIFIERS = ["Shift", "Control", "Alt", "Meta", "AltGraph"];
@@ -93,9 +93,5 @@ export class KeySheet {
 
 /** Tooltips of buttons say which key does the same. */
 export function nameKeys(root) {
-  const rows = new Map(keyTable().map((row) => [row.id, row]));
-  for (const button of root.querySelectorAll("[data-action]")) {
-    const row = rows.get(button.dataset.action);
-    if (row) button.title = row.keys.length ? `${row.label} (${keyName(row.keys[0])})` : row.label;
-  }
+  for (const button of root.querySelectorAll("[data-action]")) button.title = titleFor(button.dataset.action);
 }

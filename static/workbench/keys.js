@@ -113,6 +113,12 @@ export function keyFor(id) {
   return key ? keyName(key) : gettext("no key");
 }
 
+/** Tooltip of a button that does the same as `id`: what it does, and the key. */
+export function titleFor(id) {
+  const { keys, label } = keyTable().find((row) => row.id === id);
+  return keys.length ? `${label} (${keyName(keys[0])})` : label;
+}
+
 export function groupTitle(group) {
   return GROUPS[group]();
 }

@@ -1,5 +1,5 @@
 import { element } from "./dom.js";
-import { keyName, keyTable } from "./keys.js";
+import { titleFor } from "./keys.js";
 import { gettext } from "./messages.js";
 
 const ABOUT_PERSON = [
@@ -12,7 +12,6 @@ const ABOUT_PERSON = [
 
 /** Buttons under the list of people, for mouse and touch: who is who, clicks on heads, the frame's history. */
 export function panelTools(store, perform, heads) {
-  const keys = new Map(keyTable().map((row) => [row.id, row]));
   const button = (id, text) =>
     element(
       "button",
@@ -20,7 +19,7 @@ export function panelTools(store, perform, heads) {
         type: "button",
         className: "quiet",
         "data-action": id,
-        title: `${keys.get(id).label} (${keyName(keys.get(id).keys[0])})`,
+        title: titleFor(id),
         onclick: (event) => {
           if (event.detail > 0) event.currentTarget.blur(); // Space would press it again
           perform(id);

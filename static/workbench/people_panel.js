@@ -8,7 +8,7 @@ export class PeoplePanel {
     Object.assign(this, { scene, store });
     this._select = select;
     this._rows = new Map();
-    this._list = element("ul", { className: "people", role: "listbox", "aria-label": gettext("People in this frame") });
+    this._list = element("ul", { className: "people", role: "listbox", tabIndex: 0, "aria-label": gettext("People in this frame"), onkeydown: (event) => this._onKey(event) });
     this._empty = element("p", { className: "empty" }, gettext("Nobody yet. Click on somebody's feet in any view."));
     this._title = element("h2", {}, gettext("People"));
     this._details = element("p", { className: "details" });
@@ -42,6 +42,16 @@ export class PeoplePanel {
     this._describe();
   }
 
+  /** With the focus on the list (by Tab; a click leaves it where it was), Up and Down choose people. */
+  _onKey(event) {
+    const step = { ArrowUp: -1, ArrowDown: 1 }[event.key];
+    const people = asList(this.store.people());
+    if (!step || !people.length || event.shiftKey) return;
+    event.preventDefault();
+    const index = people.findIndex(({ person }) => person === this.store.selection);
+    this._select(people.at((Math.max(index, step > 0 ? -1 : 0) + step) % people.length).person);
+  }
+
   _rowOf(person) {
     if (!this._rows.has(person)) this._rows.set(person, this._makeRow(person));
     return this._rows.get(person).node;
@@ -53,7 +63,7 @@ export class PeoplePanel {
     const views = element("span", { className: "views" });
     const node = element(
       "li",
-      { role: "option", onclick: () => this._select(person) },
+      { role: "option", id: `person-${person}`, onclick: () => this._select(person), onmousedown: (event) => event.preventDefault() },
       element("span", { className: "number" }, String(person)),
       state,
       size,
@@ -81,6 +91,7 @@ export class PeoplePanel {
     if (row.selected !== selected) {
       row.selected = selected;
       row.node.setAttribute("aria-selected", String(selected));
+      if (selected) this._list.setAttribute("aria-activedescendant", row.node.id);
       if (selected) row.node.scrollIntoView({ block: "nearest" });
     }
   }

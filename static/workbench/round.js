@@ -1,4 +1,5 @@
 import { carriedOf } from "./annotation.js";
+import { keyFor } from "./keys.js";
 import { gettext } from "./messages.js";
 
 /**
@@ -73,7 +74,7 @@ export class Round {
   }
 
   _sayAllSeen() {
-    this._notices.say(gettext("Nobody is yellow. Has somebody no box? Click their feet. N goes on, B goes back"));
+    this._notices.say(gettext("Nobody is yellow. Has somebody no box? Click their feet. {on} goes on, {back} goes back", { on: keyFor("nextFrame"), back: keyFor("roundBack") }));
   }
 
   /** The one before, validated as they are: for a click that was not good enough. */

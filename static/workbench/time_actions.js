@@ -3,6 +3,7 @@ import { freePosition, predictPeople } from "./carry.js";
 import * as commands from "./commands.js";
 import { ask } from "./dialogs.js";
 import { chooseFill } from "./fill_dialog.js";
+import { keyFor } from "./keys.js";
 import { loadMissing } from "./load_missing.js";
 import { gettext, ngettext } from "./messages.js";
 import { sourcesOn, withFreeNumbers } from "./sources.js";
@@ -86,9 +87,9 @@ export class TimeActions {
     if (task.person !== null) this.store.select(task.person);
     if (task.kind === "single") {
       this._asked.add(task.person);
-      this.notices.say(gettext("Person {person} is in this frame only – I fills in the other frames", { person: task.person }));
+      this.notices.say(gettext("Person {person} is in this frame only – {key} fills in the other frames", { person: task.person, key: keyFor("fill") }));
     } else if (task.left === "empty") this.notices.say(gettext("Nobody is marked in this frame yet"));
-    else if (task.left === "open") this.notices.say(gettext("Everybody is validated – N says the frame is done"));
+    else if (task.left === "open") this.notices.say(gettext("Everybody is validated – {key} says the frame is done", { key: keyFor("nextFrame") }));
   }
 
   cyclePaths(name) {

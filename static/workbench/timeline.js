@@ -1,6 +1,6 @@
 import { carriedOf } from "./annotation.js";
 import { element, setText } from "./dom.js";
-import { keyName, keyTable } from "./keys.js";
+import { titleFor } from "./keys.js";
 import { gettext, ngettext } from "./messages.js";
 
 /**
@@ -25,22 +25,22 @@ export class Timeline {
 
   _build(perform) {
     this._play = this._button("play", "▶", perform);
+    this._play.setAttribute("aria-label", gettext("Play"));
     this._frames = element(
       "div",
       { className: "timeline-frames", role: "slider", tabIndex: 0, "aria-label": gettext("Frames"), "aria-valuemin": "1", "aria-valuemax": String(this.store.numbers.length) },
       this.store.numbers.map((number, index) => this._cell(number, index)),
     );
     this._attach();
-    return element("div", { className: "timeline" }, this._play, this._frames, this._button("filmstrip", gettext("Strip"), perform), this._button("nextTask", gettext("What is left"), perform));
+    return element("section", { className: "timeline", "aria-label": gettext("Frames") }, this._play, this._frames, this._button("filmstrip", gettext("Strip"), perform), this._button("nextTask", gettext("What is left"), perform));
   }
 
   _button(id, text, perform) {
-    const { keys, label } = keyTable().find((row) => row.id === id);
     const onclick = (event) => {
       perform(id);
       if (event.detail > 0) event.currentTarget.blur(); // else Space would press it again
     };
-    return element("button", { type: "button", className: "quiet", "data-action": id, title: `${label} (${keyName(keys[0])})`, "aria-label": label, onclick }, text);
+    return element("button", { type: "button", className: "quiet", "data-action": id, title: titleFor(id), onclick }, text);
   }
 
   _cell(number, index) {

@@ -13,13 +13,17 @@ export class Tutorial {
   constructor({ api, store, panes, walk, home }) {
     Object.assign(this, { _api: api, _store: store, _walk: walk, _home: home });
     this._spotlight = new Spotlight(panes);
-    this._steps = tutorialSteps();
     this._index = 0;
     this._timer = null;
     this._asked = 0;
     this._build();
     store.on("change", ({ source }) => source === "edit" && this._soon());
     store.on("frame", () => this._soon());
+  }
+
+  /** Asked for anew each time: the keys named in them can be changed. */
+  get _steps() {
+    return tutorialSteps();
   }
 
   /** Once the page is there. */

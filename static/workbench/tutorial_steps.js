@@ -1,4 +1,5 @@
 /** What the tutorial asks for, in order. The server judges each step against the truth it keeps to itself. */
+import { keyFor } from "./keys.js";
 import { gettext } from "./messages.js";
 
 const isYellow = ({ state }) => state === "carried";
@@ -21,24 +22,24 @@ export function tutorialSteps() {
       id: "correct",
       frame: 0,
       title: gettext("Correct a yellow box"),
-      text: gettext("The yellow, dashed box in the ring was carried over and stands beside its person. Select it: click on it, or press F. Then click between the person's feet with the right button, or move it with the arrow keys, until it fits in all views."),
-      hint: gettext("Z zooms every view to it, and back. Moving says that you looked: it is not yellow any more."),
+      text: gettext("The yellow, dashed box in the ring was carried over and stands beside its person. Select it: click on it, or press {next}. Then click between the person's feet with the right button, or move it with the arrow keys, until it fits in all views.", { next: keyFor("nextCarried") }),
+      hint: gettext("{zoom} zooms every view to it, and back. Moving says that you looked: it is not yellow any more.", { zoom: keyFor("zoom") }),
       light: { people: isYellow },
     },
     {
       id: "remove",
       frame: 0,
       title: gettext("Remove a box with nobody in it"),
-      text: gettext("One box has nobody in it. Look at the boxes in several views. Found? Click on it and press Backspace."),
-      hint: gettext("Wrong one? Ctrl + Z brings it back."),
+      text: gettext("One box has nobody in it. Look at the boxes in several views. Found? Click on it and press {remove}.", { remove: keyFor("remove") }),
+      hint: gettext("Wrong one? {undo} brings it back.", { undo: keyFor("undo") }),
       light: { parts: '[data-view^="camera"]' },
     },
     {
       id: "next",
       frame: 1,
       title: gettext("Go to the next frame"),
-      text: gettext("Press N. Two people there are yellow: they still stand where they were a frame ago. Right-click between their feet, or use the arrow keys, until nobody is yellow."),
-      hint: gettext("F goes to the next yellow person. One who stands right already only needs E."),
+      text: gettext("Press {on}. Two people there are yellow: they still stand where they were a frame ago. Right-click between their feet, or use the arrow keys, until nobody is yellow.", { on: keyFor("nextFrame") }),
+      hint: gettext("{next} goes to the next yellow person. One who stands right already only needs {validate}.", { next: keyFor("nextCarried"), validate: keyFor("validate") }),
       light: { parts: '[data-action="nextFrame"]', people: isYellow },
     },
   ];
@@ -51,6 +52,6 @@ export function whatMatters() {
     gettext("Feet are within 15 cm: look in two views before you believe one."),
     gettext("The same person keeps the same number in all frames."),
     gettext("Nobody is left yellow, and no box is empty."),
-    gettext("Take the time it takes. The press of ? shows every key."),
+    gettext("Take the time it takes. {help} shows every key.", { help: keyFor("help") }),
   ];
 }

@@ -25,7 +25,7 @@ export class ViewsMenu {
       element(
         "table",
         {},
-        element("thead", {}, element("tr", {}, headings().map((text) => element("th", { scope: "col" }, text)))),
+        element("thead", {}, element("tr", {}, headings().map((text) => (text ? element("th", { scope: "col" }, text) : element("td", {}))))),
         element("tbody", {}, this._row(gettext("All cameras"), cameras, null), panes.all.map((pane) => this._row(pane.view.title, [pane], pane))),
       ),
       element("div", { className: "dialog-buttons" }, this._button(gettext("Show all, alike"), () => this._views.showAll()), this._button(gettext("Close"), () => this.toggle())),

@@ -164,7 +164,7 @@ export class Walk {
   async _askAboutCarried(waiting) {
     const answer = await ask({
       title: ngettext("{n} person is still yellow", "{n} people are still yellow", waiting.length),
-      body: gettext("They stand where the frames beside this one let expect them. Have you looked at all of them?"),
+      body: gettext("They stand where the frames beside this one suggest. Have you looked at all of them?"),
       buttons: [
         { id: "look", label: gettext("Look at the first one"), main: true },
         { id: "validate", label: gettext("All are right: validate and go on") },

@@ -31,7 +31,7 @@ def test_a_hint_names_the_keys_the_annotator_has_chosen(bench: Callable[..., Ben
     opened.press("?")
     opened.page.locator("[data-key-of=zoom]").click()
     opened.press("o", "Escape", "Tab")
-    expect(opened.page.locator(".hint")).to_contain_text("O shows the feet large")
+    expect(opened.page.locator(".hint")).to_contain_text("O shows the person large")
 
 
 def test_the_first_turn_of_the_wheel_says_what_else_a_view_can_do(bench: Callable[..., Bench]) -> None:

@@ -71,7 +71,7 @@ def test_a_corrected_person_must_be_validated(worker: Worker) -> None:
 def test_removing_everybody_is_not_removing_the_wrong_one(worker: Worker) -> None:
     verdict = check(worker, Step.REMOVE, 0, [])
     assert not verdict.ok
-    assert "Ctrl+Z" in verdict.message
+    assert "Undo" in verdict.message
 
 
 def test_impossible_annotations_are_refused(worker: Worker) -> None:
