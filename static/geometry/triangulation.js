@@ -21,7 +21,8 @@ export function intersectRays(camera1, u1, v1, camera2, u2, v2) {
 /**
  * The same for any number of clicks, by damped Gauss-Newton from the best single click.
  *
- * @param {{camera: import("./camera.js").Camera, u: number, v: number}[]} clicks
+ * @param {{camera: import("./camera.js").Camera, u: number, v: number, z?: number}[]} clicks `z`: metres above the
+ *   ground point of what was clicked on; 0 is the feet
  */
 export function groundPoint(clicks) {
   let best = startingPoint(clicks);
@@ -43,7 +44,7 @@ export function groundPoint(clicks) {
 
 function startingPoint(clicks) {
   return clicks
-    .map(({ camera, u, v }) => backProject(camera, u, v))
+    .map(({ camera, u, v, z }) => backProject(camera, u, v, z))
     .map((ground) => ground && evaluated(clicks, ground.x, ground.y))
     .filter(Boolean)
     .reduce((best, candidate) => (best && best.cost <= candidate.cost ? best : candidate), null);
@@ -56,7 +57,7 @@ function evaluated(clicks, x, y) {
 }
 
 function missesAt(clicks, x, y) {
-  const seen = clicks.map(({ camera }) => project(camera, x, y));
+  const seen = clicks.map(({ camera, z }) => project(camera, x, y, z));
   if (seen.includes(null)) return null;
   return seen.map((point, index) => ({ x: point.x - clicks[index].u, y: point.y - clicks[index].v }));
 }

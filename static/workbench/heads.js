@@ -33,9 +33,9 @@ export class Heads extends Emitter {
     return pane.view.ground(pane.transform.toSource(at.x, at.y), this.height(pane, person));
   }
 
-  /** The same click as if the feet had been clicked on: a pixel of the view's picture, or null. */
-  feet(pane, at, person) {
-    const ground = this.active && this.ground(pane, at, person);
-    return ground ? pane.view.point(ground) : pane.transform.toSource(at.x, at.y);
+  /** What is clicked on: a pixel of the view's picture, and how high above the ground it is. */
+  pixel(pane, at, person) {
+    const { x, y } = pane.transform.toSource(at.x, at.y);
+    return { x, y, z: this.height(pane, person) };
   }
 }

@@ -38,7 +38,7 @@ export class Moving {
     }
     this.ghost.hide();
     this.history.run(commands.place(this.store, { position }));
-    this.sightings.begin(pane, this.heads.feet(pane, at, null));
+    this.sightings.begin(pane, this.heads.pixel(pane, at, null));
     return true;
   }
 
@@ -48,7 +48,7 @@ export class Moving {
     const position = person && this._positionUnder(pane, at, event, person);
     if (!person || position === null || !this.moveTo(person, position, event)) return false;
     this.ghost.hide();
-    this.sightings.begin(pane, this.heads.feet(pane, at, person));
+    this.sightings.begin(pane, this.heads.pixel(pane, at, person));
     return true;
   }
 
@@ -58,8 +58,8 @@ export class Moving {
     if (pane.view.index === null) return this.guard.say(event, gettext("The map sees from nowhere: click the feet in a camera's view"));
     const person = this.store.selected();
     if (!person) return this.place(pane, at, event);
-    const feet = this.heads.feet(pane, at, person);
-    if (this.sightings.add(pane, feet, event, (position) => this.moveTo(person, position, event))) return;
+    const pixel = this.heads.pixel(pane, at, person);
+    if (this.sightings.add(pane, pixel, event, (position) => this.moveTo(person, position, event))) return;
     if (this.moveHere(pane, at, event)) this.guard.say(event, gettext("Now Alt + click on the same feet in another view"));
   }
 

@@ -17,7 +17,7 @@ export class Sightings {
     Object.assign(this, { _scene: scene, _store: store, _panes: panes, _guard: guard });
     this._annotation = null; // the person as the clicks have put them
     this._frame = null;
-    this._clicks = new Map(); // camera index → pixel
+    this._clicks = new Map(); // camera index → pixel {x, y}, and z: how high above the feet
     this._result = null; // {clicks: {index, pixel, seen, residual}[]}, shown for a while
     this._timer = null;
     panes.addExtra((pane) => this._items(pane));
@@ -35,7 +35,7 @@ export class Sightings {
 
   /**
    * One more click on the feet of the selected person, if there was one in another view before.
-   * @param {{x, y}} pixel of the view's picture
+   * @param {{x, y, z}} pixel of the view's picture, and metres above the ground of what it shows
    * @param {(position: number) => boolean} move puts the person there if possible
    * @returns {boolean} false: this is the first click
    */
@@ -69,12 +69,12 @@ export class Sightings {
   _meeting(clicks) {
     const entries = [...clicks];
     const { cameras } = this._scene;
-    const point = groundPoint(entries.map(([index, { x, y }]) => ({ camera: cameras[index], u: x, v: y })));
+    const point = groundPoint(entries.map(([index, { x, y, z }]) => ({ camera: cameras[index], u: x, v: y, z })));
     if (!point) return null;
     const shown = entries.map(([index, pixel], place) => ({
       index,
       pixel,
-      seen: this._scene.toImage(index, point),
+      seen: this._scene.toImage(index, point, pixel.z),
       residual: point.residuals[place],
     }));
     return { x: point.x, y: point.y, clicks: shown };

@@ -104,6 +104,20 @@ def test_a_head_can_be_clicked_on_where_somebodys_box_is(bench: Callable[..., Be
     assert opened.rows() == ["1", "2"]
 
 
+def test_two_views_of_a_head_meet_above_the_feet(bench: Callable[..., Bench]) -> None:
+    """One view alone sees a head at its own height at any distance; two agree."""
+    opened = bench(people=6, marked=False).open()
+    view, position = well_seen_from_above(opened)
+    other = next(one for one in seeing(position) if one != view)
+    opened.press("y")
+    opened.page.keyboard.down("Alt")
+    opened.page.mouse.click(*head_of(opened, view, position))
+    opened.page.mouse.click(*head_of(opened, other, position))
+    opened.page.keyboard.up("Alt")
+    expect(opened.page.locator(".notice").first).to_contain_text("Best place for 2 views")
+    assert metres_apart(opened.stored()[0].position, position) < 0.08
+
+
 def test_escape_and_the_button_end_clicks_on_heads(bench: Callable[..., Bench]) -> None:
     opened = bench(people=1).open()
     button = opened.page.get_by_role("button", name="Heads")
@@ -139,6 +153,11 @@ def test_where_one_click_is_enough_no_other_view_is_framed(bench: Callable[..., 
     opened.page.wait_for_selector(".pane[data-settles]", state="attached")
     opened.page.mouse.move(*opened.place_of(best_view(position), position))
     assert settling(opened) == []
+
+
+def seeing(position: int) -> list[int]:
+    x, y = GRID.metres([position])[0]
+    return [camera.index for camera in cameras() if inside(camera.index, float(x), float(y))]
 
 
 def doubtful_place() -> tuple[int, int]:
