@@ -52,14 +52,18 @@ class SceneView(PlacedView):
     @extend_schema(summary="Cameras, grid and frames", responses={200: SceneSerializer, **REFUSALS})
     def get(self, request: Request, **kwargs: Any) -> Response:
         place = self.place(**kwargs)
-        heads = LayerFrame.objects.filter(layer=place.layer)
+        heads = LayerFrame.objects.filter(layer=place.layer, frame__in=place.frames.order_by())
         parts = {head.frame_id: scene.head_part(head) for head in heads}
         return Response(
             {
                 "mode": place.mode,
                 **scene.dataset_part(place.dataset),
                 "frames": scene.frames_part(place.frames, parts),
-                "layer": {"id": place.layer.pk, "name": place.layer.name},
+                "layer": {
+                    "id": place.layer.pk,
+                    "name": place.layer.name,
+                    "first": place.part.first if place.part else None,
+                },
                 "editable": not place.read_only_reason,
                 "read_only_reason": assignments.explained(place.read_only_reason),
                 "assignment": scene.assignment_part(place.assignment),
@@ -146,7 +150,9 @@ class AssignmentHistory(AssignmentPlace, HistoryView):
 
 
 class LayerScene(LayerPlace, SceneView):
-    pass
+    """Of a layer of more than 500 frames the part with the first frame that is not done."""
+
+    in_parts = True
 
 
 class LayerFrames(LayerPlace, FramesView):

@@ -20,7 +20,7 @@ from gtm_hit.api.authentication import (
     WorkerAuthentication,
 )
 from gtm_hit.models import ApiToken, Assignment, Dataset, Frame, Layer, Worker
-from gtm_hit.ops import assignments, tokens
+from gtm_hit.ops import assignments, parts, tokens
 from gtm_hit.ops.annotations import Author
 
 
@@ -33,6 +33,7 @@ class Place:
     author: Author
     read_only_reason: str
     assignment: Assignment | None = None
+    part: parts.Part | None = None  # of a layer that is too long to be opened whole
 
     def frame(self, number: int) -> Frame:
         frame = self.frames.filter(number=number).first()
@@ -66,13 +67,19 @@ class LayerPlace(APIView):
     authentication_classes = [BearerAuthentication, StaffSession]
     permission_classes = [StaffMay]
     write_scope = ApiToken.Scope.WORK
+    in_parts = False  # also under the address of the whole layer
 
     def place(self, **kwargs: Any) -> Place:
         found = Layer.objects.select_related("dataset").filter(pk=kwargs["layer"]).first()
         if found is None:
             raise Http404
         assignment = Assignment.objects.select_related("batch__dataset").filter(layer=found).first()
-        scope = {"batches": assignment.batch_id} if assignment else {"dataset": found.dataset_id}
+        scope: dict[str, Any] = (
+            {"batches": assignment.batch_id} if assignment else {"dataset": found.dataset_id}
+        )
+        part = parts.part_of(found, kwargs.get("first")) if self.in_parts or "first" in kwargs else None
+        if part:
+            scope["number__range"] = (part.first, part.last)
         return Place(
             mode="layer",
             dataset=found.dataset,
@@ -81,6 +88,7 @@ class LayerPlace(APIView):
             author=cast(User, self.request.user),
             read_only_reason="not_author" if found.kind == Layer.Kind.ASSIGNMENT else "",
             assignment=assignment,
+            part=part,
         )
 
 

@@ -42,6 +42,13 @@ layer = [
     path("frames/<int:number>/", frames.LayerFrameView.as_view()),
     path("frames/<int:number>/history/", frames.LayerHistory.as_view()),
 ]
+# The same for a part of a long layer: the workbench opens no more of it.
+one_part = [
+    path("scene/", frames.LayerScene.as_view(schema=None)),
+    path("frames/", frames.LayerFrames.as_view(schema=None)),
+    path("frames/<int:number>/", frames.LayerFrameView.as_view(schema=None)),
+    path("frames/<int:number>/history/", frames.LayerHistory.as_view(schema=None)),
+]
 learning = [
     path("scene/", tutorial.TutorialScene.as_view()),
     path("frames/", tutorial.TutorialFrames.as_view()),
@@ -100,6 +107,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *scripts,
     path("assignment/", include(assignment)),
     path("layers/<int:layer>/", include(layer)),
+    path("layers/<int:layer>/from/<int:first>/", include(one_part)),
     path("tutorial/", include(learning)),
     re_path(r"^images/(?P<digest>[0-9a-f]{64})\.jpg$", ImageView.as_view()),
     path("schema/", SpectacularAPIView.as_view(**staff), name="schema"),

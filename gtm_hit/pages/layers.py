@@ -8,7 +8,7 @@ from django.urls import path
 from django.views.decorators.http import require_POST, require_safe
 
 from gtm_hit.models import Layer
-from gtm_hit.ops import exporting, overview
+from gtm_hit.ops import exporting, overview, parts
 from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, FORMATS
 from gtm_hit.pages.access import StaffRequest, staff_only
 from gtm_hit.pages.datasets import summary_or_404
@@ -26,6 +26,7 @@ def dataset_layers(request: HttpRequest, slug: str) -> HttpResponse:
         "tab": "layers",
         "dataset": summary.dataset,
         "frames": summary.frames,
+        "long": parts.is_long(summary.frames),
         "page": page,
         "formats": FORMATS,
         "default_formats": DEFAULT_FORMATS,

@@ -13,7 +13,7 @@ from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods, require_POST, require_safe
 
 from gtm_hit.models import Layer, Worker
-from gtm_hit.ops import assignments, tokens, tutorial, workers
+from gtm_hit.ops import assignments, parts, tokens, tutorial, workers
 from gtm_hit.pages.access import staff_only
 from gtm_hit.pages.catalog import workbench_catalog
 
@@ -134,7 +134,10 @@ def annotate(request: HttpRequest, token: str) -> HttpResponse:
 def layer(request: HttpRequest, slug: str, name: str) -> HttpResponse:
     found = get_object_or_404(Layer, dataset__slug=slug, name=name)
     home_url = reverse("dataset-layers", args=[slug])
-    return workbench(request, api=f"/api/v1/layers/{found.pk}/", token="", mode="layer", home=home_url)
+    asked = request.GET.get("from", "")
+    part = parts.part_of(found, int(asked) if asked.isdecimal() and len(asked) < 10 else None)
+    address = f"/api/v1/layers/{found.pk}/" + (f"from/{part.first}/" if part else "")
+    return workbench(request, api=address, token="", mode="layer", home=home_url)
 
 
 def workbench(request: HttpRequest, **context: str) -> HttpResponse:

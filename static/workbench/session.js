@@ -44,7 +44,9 @@ function firstUnfinished({ frames }) {
 
 /** Under which name edits are kept; the tutorial keeps none. */
 function layerKey({ mode, layer }) {
-  return mode === "tutorial" ? null : `${mode} ${layer.id}`;
+  if (mode === "tutorial") return null;
+  // Parts of a long layer know nothing of each other's frames.
+  return layer.first == null ? `${mode} ${layer.id}` : `${mode} ${layer.id} from ${layer.first}`;
 }
 
 /** Edits the server never acknowledged, and the undo steps, as they were before a reload. */
