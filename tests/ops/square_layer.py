@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import uuid
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from gtm_hit.models import Annotation, Camera, Dataset, Frame, Layer
+from gtm_hit.geometry.camera import Camera
+from gtm_hit.models import Annotation, Dataset, Frame, Layer
+from gtm_hit.models import Camera as CameraRow
 from gtm_hit.ops import annotations, exporting
 from gtm_hit.ops.annotation_import.findings import Kind
 from gtm_hit.ops.annotation_import.layers import AnnotationSource, LayerReport, import_annotations
@@ -20,8 +23,14 @@ NUMBERS = (0, 5, 10, 15)
 
 def make_square(**values: Any) -> Dataset:
     dataset = Dataset.objects.create(slug="square", name="Square", **{**VALUES, **values})
-    for camera in cameras():
-        Camera.objects.create(
+    add_cameras(dataset, cameras())
+    Frame.objects.bulk_create(Frame(dataset=dataset, number=number) for number in NUMBERS)
+    return dataset
+
+
+def add_cameras(dataset: Dataset, found: Iterable[Camera]) -> None:
+    for camera in found:
+        CameraRow.objects.create(
             dataset=dataset,
             index=camera.index,
             name=camera.name,
@@ -32,8 +41,6 @@ def make_square(**values: Any) -> Dataset:
             tvec=camera.tvec.tolist(),
             distortion=camera.distortion.tolist(),
         )
-    Frame.objects.bulk_create(Frame(dataset=dataset, number=number) for number in NUMBERS)
-    return dataset
 
 
 def fill(layer: Layer, people: int = 12, **values: Any) -> None:

@@ -14,13 +14,17 @@ import numpy as np
 import pytest
 from django.core.management import call_command
 
+from gtm_hit.demo.render import truth
+from gtm_hit.demo.scene import read_scene
+from gtm_hit.formats.camera_json import load_cameras
 from gtm_hit.formats.manifest import verify
 from gtm_hit.formats.pom_reader import read_pom
-from gtm_hit.models import Dataset, Layer, LayerFrame
+from gtm_hit.models import Dataset, Frame, Layer, LayerFrame
+from gtm_hit.ops import demo
 from gtm_hit.ops.coverage import table
 from gtm_hit.ops.importing.dataset import ImportFailed
-from tests.ops.square_layer import content, export, fill, make_square, take_in
-from tests.work_scene import make_layer
+from tests.ops.square_layer import add_cameras, content, export, fill, make_square, save, take_in
+from tests.work_scene import make_layer, row
 
 pytestmark = pytest.mark.django_db
 
@@ -132,6 +136,39 @@ def test_multiviewx_comes_back_as_it_went_in_every_format(multiviewx: Layer, tmp
     for way, (_kind, part, reader) in WAYS.items():
         back = take_in(multiviewx.dataset, folder / part, reader, way.replace(" ", "-"))
         assert content(back.layer) == content(multiviewx), way
+
+
+@pytest.fixture
+def demo_scene() -> Layer:
+    """The hidden truth of the demo scene: seven real poses, twenty frames, people of their own heights."""
+    scene = read_scene()
+    dataset = Dataset.objects.create(
+        slug="demo",
+        name="Demo scene",
+        frame_rate=scene.numbers_per_second,
+        frame_step=scene.number_step,
+        **{name: getattr(scene.grid, name) for name in ("columns", "rows", "step", "origin_x", "origin_y")},
+    )
+    add_cameras(dataset, load_cameras(demo.CAMERAS))
+    layer = make_layer(dataset, "truth", Layer.Kind.GROUND_TRUTH)
+    people: dict[int, list[Any]] = {number: [] for number in scene.frame_numbers}
+    for each in truth(scene):
+        people[each.number].append(row(each.person, each.position, height=round(each.height, 2)))
+    for number, rows in people.items():
+        Frame.objects.create(dataset=dataset, number=number)
+        save(layer, number, rows)
+    return layer
+
+
+def test_the_demo_scene_comes_back_as_it_went_in_every_format(demo_scene: Layer, tmp_path: Path) -> None:
+    folder = export(demo_scene, tmp_path / "out", *dict.fromkeys(kind for kind, _, _ in WAYS.values()))
+    assert verify(folder) == []
+    for way, (_kind, part, reader) in WAYS.items():
+        back = take_in(demo_scene.dataset, folder / part, reader, way.replace(" ", "-"))
+        assert content(back.layer) == content(demo_scene), way
+    for way in ("wildtrack", "multiviewx", "csv"):  # these say how tall people are
+        back = Layer.objects.get(name=way)
+        assert content(back, "position", "height") == content(demo_scene, "position", "height"), way
 
 
 def test_boxes_alone_lead_back_to_every_position_of_multiviewx(multiviewx: Layer, tmp_path: Path) -> None:

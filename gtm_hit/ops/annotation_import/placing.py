@@ -17,6 +17,7 @@ from gtm_hit.ops.annotation_import.tables import NOBODY, Boxes, Floats, Ids, Peo
 PLACING = "finding positions"
 PEOPLE_AT_ONCE = 4096
 SAME_FEET = 2.0  # pixels: a position the file states is believed when its rectangle stands where the box does
+LEAN = 0.2  # sideways, for every pixel that the box of somebody taller or smaller is higher or lower
 
 
 def place(
@@ -98,6 +99,8 @@ def _positions(seen: Floats, stated: Ids, table: RectangleTable, cameras: Sequen
 
 
 def _stand_there(seen: Floats, positions: Ids, table: RectangleTable) -> NDArray[np.bool_]:
-    rectangles, _visible = table.rectangles(positions)
-    away = np.abs(feet(rectangles) - feet(seen)).max(axis=-1)
-    return ((away <= SAME_FEET) | np.isnan(away)).all(axis=1)
+    rectangles = table.rectangles(positions)[0].astype(np.float64)
+    away = np.abs(feet(rectangles) - feet(seen))
+    taller = np.abs((seen[..., 3] - seen[..., 1]) - (rectangles[..., 3] - rectangles[..., 1]))
+    there = (away[..., 0] <= SAME_FEET + LEAN * taller) & (away[..., 1] <= SAME_FEET)
+    return (there | np.isnan(taller)).all(axis=1)
