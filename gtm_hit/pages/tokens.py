@@ -20,7 +20,7 @@ from gtm_hit.pages.access import StaffRequest, staff_only
 SCOPES = [
     (ApiToken.Scope.READ.value, gettext_lazy("read everything")),
     (ApiToken.Scope.IMPORT.value, gettext_lazy("bring datasets and annotations in")),
-    (ApiToken.Scope.WORK.value, gettext_lazy("make batches and save frames")),
+    (ApiToken.Scope.WORK.value, gettext_lazy("make batches, get the workers' link, save frames")),
     (ApiToken.Scope.RELEASE.value, gettext_lazy("export and release")),
 ]
 
