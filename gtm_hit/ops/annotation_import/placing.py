@@ -103,5 +103,4 @@ def _stand_there(seen: Floats, positions: Ids, table: RectangleTable) -> NDArray
     away = np.abs(feet(rectangles) - feet(seen))
     taller = np.abs((seen[..., 3] - seen[..., 1]) - (rectangles[..., 3] - rectangles[..., 1]))
     there = (away[..., 0] <= SAME_FEET + LEAN * taller) & (away[..., 1] <= SAME_FEET)
-    everywhere: NDArray[np.bool_] = (there | np.isnan(taller)).all(axis=1)
-    return everywhere
+    return np.logical_and.reduce(there | np.isnan(taller), axis=1)
