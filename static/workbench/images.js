@@ -1,5 +1,6 @@
 import { ApiError } from "./api.js";
 import { Emitter } from "./emitter.js";
+import { gettext } from "./messages.js";
 
 const AT_ONCE = 6; // connections a browser opens to one server
 const BUDGET = 256 * 1024 * 1024; // bytes of decoded pictures kept
@@ -32,7 +33,7 @@ export class Images extends Emitter {
     picture = { key, frame, camera, address, status: "waiting", bitmap: null, error: "", tries: 0, used: performance.now() };
     this._pictures.set(key, picture);
     if (address) this._enqueue(picture, size === "full"); // sharpness of what is looked at comes before prefetching
-    else Object.assign(picture, { status: "error", error: "no image" });
+    else Object.assign(picture, { status: "error", error: gettext("no image") });
     return picture;
   }
 
@@ -104,7 +105,7 @@ export class Images extends Emitter {
 
   _failed(picture, error) {
     if (error.name === "AbortError") return this._forget(picture);
-    Object.assign(picture, { status: "error", error: error.message });
+    Object.assign(picture, { status: "error", error: error instanceof TypeError ? gettext("no connection") : error.message });
     const permanent = error instanceof ApiError && error.status < 500;
     const pause = RETRIES[picture.tries];
     picture.tries += 1;
