@@ -3,6 +3,7 @@ import { element, setText } from "./dom.js";
 import { titleFor } from "./keys.js";
 import { gettext, ngettext } from "./messages.js";
 import { saveWords } from "./save_words.js";
+import { paintSoon } from "./scheduler.js";
 
 const THEME_KEY = "gtm-theme"; // shared with the ordinary pages
 
@@ -12,24 +13,16 @@ export class Bar {
     Object.assign(this, { scene, store, saver, panes });
     this._perform = perform;
     this.element = this._build(home, signIn);
-    store.on("change", () => this._later());
-    store.on("frame", () => this._later());
-    saver.on("status", () => this._later());
-    for (const name of ["zoom", "options"]) panes.on(name, () => this._later());
-    this._update();
+    store.on("change", () => paintSoon(this));
+    store.on("frame", () => paintSoon(this));
+    saver.on("status", () => paintSoon(this));
+    for (const name of ["zoom", "options"]) panes.on(name, () => paintSoon(this));
+    this.paint();
   }
 
   /** What one needs to know about the keyboard at the moment. */
   showMode(controls) {
     setText(this._mode, controls ? gettext("Buttons: Tab moves, Esc returns to annotating") : "");
-  }
-
-  /** Once per animation frame, however many edits there are. */
-  _later() {
-    this._frame ??= requestAnimationFrame(() => {
-      this._frame = null;
-      this._update();
-    });
   }
 
   _build(home, signIn) {
@@ -80,7 +73,7 @@ export class Bar {
     );
   }
 
-  _update() {
+  paint() {
     const { store, saver } = this;
     const index = store.numbers.indexOf(store.current);
     setText(this._place, gettext("Frame {place} of {n}", { place: index + 1, n: store.numbers.length }));

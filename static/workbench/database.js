@@ -38,6 +38,7 @@ class Database {
   _run(store, mode, work) {
     const transaction = this._connection.transaction(store, mode, { durability: "relaxed" });
     const request = work(transaction.objectStore(store));
+    if (mode === "readwrite") transaction.commit(); // or it is lost when the page goes away now
     return new Promise((resolve, reject) => {
       transaction.oncomplete = () => resolve(request.result);
       transaction.onabort = transaction.onerror = () => reject(transaction.error);

@@ -11,7 +11,7 @@ export class Guard {
     return this.saver.readOnly === null;
   }
 
-  /** @param place a pointer event, a place in the window, or null for the bottom of the screen */
+  /** @param place a pointer event, a place in the window, null for the bottom of the screen; or what answers with one */
   refused(place = null) {
     if (this.editable) return false;
     this.say(place, gettext("Read-only: {reason}", { reason: this.saver.readOnly }));
@@ -31,6 +31,7 @@ export class Guard {
   }
 
   say(place, text) {
+    if (typeof place === "function") return this.say(place(), text); // asking for it makes the browser lay out the page
     this.notices.sayAt(place && "clientX" in place ? { x: place.clientX, y: place.clientY } : place, text);
   }
 

@@ -1,9 +1,14 @@
 import { DISMISSED, FRAMES, HISTORIES, openDatabase } from "./database.js";
 import { joinTabs, shareNumbers } from "./tabs.js";
 
+// Between two writes of one record while a key is held, ms. Undo steps are worth less than what is annotated.
+const PAUSE = 300;
+const PAUSE_OF_HISTORY = 1000;
+
 /**
  * Keeps what the server has not acknowledged, so that a crash, a closed lid or an expired session loses nothing.
- * Writing never blocks an edit: one write at a time per record, always of the newest value.
+ * Writing never blocks an edit: one write at a time per record, always of the newest value. The first edit is
+ * written at once, those of a burst a moment later together: each write copies the whole record.
  */
 export class Journal {
   /** @param {string} layer whose edits; null: nothing is kept (tutorial) */
@@ -24,6 +29,8 @@ export class Journal {
     this._tab = tab;
     this._waiting = new Map();
     this._writing = new Set();
+    this._urgent = new Set(); // records that must not wait for the end of their pause
+    this._pauses = new Map(); // record → ends its pause
   }
 
   /** Whether edits survive a crash in this browser. */
@@ -36,11 +43,13 @@ export class Journal {
     if (this.keeps) shareNumbers(this._tab, store);
   }
 
-  /** @param {() => object} record made when it is written, so that a burst of edits costs one write */
-  write(frame, record) {
-    this._queue(`frame ${frame}`, () =>
-      this._database.put(FRAMES, { ...record(), layer: this._layer, tab: this._tab.name, frame }),
-    );
+  /**
+   * @param {() => object} record made when it is written, so that a burst of edits costs one write
+   * @param {boolean} patient one edit of many: it may wait a moment
+   */
+  write(frame, record, patient = false) {
+    const work = () => this._database.put(FRAMES, { ...record(), layer: this._layer, tab: this._tab.name, frame });
+    this._queue(`frame ${frame}`, work, patient);
   }
 
   clear(frame) {
@@ -61,9 +70,13 @@ export class Journal {
   }
 
   writeHistory(dump) {
-    this._queue("history", () =>
-      this._database.put(HISTORIES, { layer: this._layer, tab: this._tab.name, at: Date.now(), ...dump() }),
-    );
+    const work = () => this._database.put(HISTORIES, { layer: this._layer, tab: this._tab.name, at: Date.now(), ...dump() });
+    this._queue("history", work, true);
+  }
+
+  /** Write what waits: the page goes away. */
+  hurry() {
+    for (const end of this._pauses.values()) end();
   }
 
   /** Steps of this tab before its reload, else those of the tab that was closed or crashed last. */
@@ -84,9 +97,13 @@ export class Journal {
     return this.keeps ? ((await this._database.get(DISMISSED, this._layer))?.keys ?? []) : [];
   }
 
-  _queue(name, work) {
+  _queue(name, work, patient = false) {
     if (!this.keeps) return;
     this._waiting.set(name, work);
+    if (!patient) {
+      this._urgent.add(name);
+      this._pauses.get(name)?.();
+    }
     if (!this._writing.has(name)) this._drain(name);
   }
 
@@ -96,12 +113,22 @@ export class Journal {
     while (this._waiting.has(name)) {
       const work = this._waiting.get(name);
       this._waiting.delete(name);
+      this._urgent.delete(name);
       try {
         await work();
       } catch (error) {
         console.warn("the journal could not be written", error);
       }
+      if (!this._urgent.has(name)) await this._pause(name);
     }
     this._writing.delete(name);
+  }
+
+  async _pause(name) {
+    await new Promise((resolve) => {
+      this._pauses.set(name, resolve);
+      setTimeout(resolve, name === "history" ? PAUSE_OF_HISTORY : PAUSE);
+    });
+    this._pauses.delete(name);
   }
 }

@@ -67,7 +67,7 @@ export class Moving {
     const person = this.guard.selected();
     if (!person) return;
     const step = this._held.press(name, event, () => arrowSteps(this.panes, person))[name];
-    const beside = this.guard.besideFoot(person);
+    const beside = () => this.guard.besideFoot(person);
     for (let cells = far ?? this._held.pace; cells > 0; cells = far ? 0 : cells - 1) {
       const position = this._steppedFree(person, step, cells);
       if (position !== null) return this.moveTo(person, position, beside);

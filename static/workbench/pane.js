@@ -2,6 +2,7 @@ import { element, setText } from "./dom.js";
 import { lookOf } from "./looks.js";
 import { gettext } from "./messages.js";
 import { damage, overlaps } from "./regions.js";
+import { paintSoon } from "./scheduler.js";
 import { clamped, fit, resized } from "./transform.js";
 import { unit } from "./unit.js";
 
@@ -11,10 +12,9 @@ import { unit } from "./unit.js";
  */
 export class Pane {
   /** @param {{frame, people, selection, options, extras: (pane) => object[]}} model read at every paint */
-  constructor(view, model, scheduler) {
+  constructor(view, model) {
     this.view = view;
     this._model = model;
-    this._scheduler = scheduler;
     this._items = [];
     this._known = new Map(); // person → item, as long as neither the person nor the way of drawing changes
     this._dirty = { picture: true, marks: true };
@@ -30,13 +30,13 @@ export class Pane {
   /** The picture, guides included, has to be painted again. */
   markPicture() {
     this._dirty.picture = true;
-    this._scheduler.mark(this);
+    paintSoon(this);
   }
 
   /** People or selection changed; `all` also when nothing but the style did. */
   markPeople(all = false) {
     this._dirty.marks ||= all;
-    this._scheduler.mark(this);
+    paintSoon(this);
   }
 
   get hidden() {
@@ -141,7 +141,7 @@ export class Pane {
 
   _markAll() {
     this._dirty = { picture: true, marks: true };
-    this._scheduler.mark(this);
+    paintSoon(this);
   }
 
   _paintPicture() {

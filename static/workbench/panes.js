@@ -4,7 +4,6 @@ import { MapView } from "./map_view.js";
 import { gettext } from "./messages.js";
 import { Emitter } from "./emitter.js";
 import { Pane } from "./pane.js";
-import { Scheduler } from "./scheduler.js";
 import { focus } from "./transform.js";
 import { overlaps } from "./regions.js";
 
@@ -28,11 +27,10 @@ export class Panes extends Emitter {
     this.held = null; // {steps}: what the arrow keys do while one is held
     this._extras = [];
     this.element = element("div", { className: "panes" });
-    this._scheduler = new Scheduler();
     const model = this._model();
     const views = scene.cameras.map((_, index) => new CameraView(scene, index, images));
     views.push(new MapView(scene, gettext("Ground from above")));
-    this.all = views.map((view) => new Pane(view, model, this._scheduler));
+    this.all = views.map((view) => new Pane(view, model));
     this.element.append(...this.all.map((pane) => pane.element));
     this.active = this.all[0];
     this.active.element.classList.add("active");

@@ -1,6 +1,7 @@
 import { asList } from "./annotation.js";
 import { element, setText } from "./dom.js";
 import { gettext, ngettext } from "./messages.js";
+import { paintSoon } from "./scheduler.js";
 
 /** The list of people in the frame: number, state in words, in how many views they are seen. */
 export class PeoplePanel {
@@ -13,19 +14,12 @@ export class PeoplePanel {
     this._title = element("h2", {}, gettext("People"));
     this._details = element("p", { className: "details" });
     this.element = element("aside", { className: "panel" }, this._title, this._empty, this._list, this._details);
-    for (const event of ["change", "selection", "frame"]) store.on(event, () => this._later());
-    this._update();
-  }
-
-  _later() {
-    this._frame ??= requestAnimationFrame(() => {
-      this._frame = null;
-      this._update();
-    });
+    for (const event of ["change", "selection", "frame"]) store.on(event, () => paintSoon(this));
+    this.paint();
   }
 
   /** Only rows whose person changed are touched: this runs for every step of a held key. */
-  _update() {
+  paint() {
     const people = asList(this.store.people());
     const { selection } = this.store;
     this._empty.hidden = people.length > 0;
@@ -82,11 +76,10 @@ export class PeoplePanel {
       const carried = one.state === "carried";
       row.node.dataset.state = one.state;
       const state = carried ? gettext("carried over") : gettext("validated");
-      if (row.state.textContent !== state) row.state.textContent = state;
+      setText(row.state, state);
       setText(row.size, one.height === null ? "" : gettext("{height} m", { height: one.height.toFixed(2) }));
       const seen = this.scene.seenBy(one);
-      const views = ngettext("{n} view", "{n} views", seen);
-      if (row.views.textContent !== views) row.views.textContent = views;
+      setText(row.views, ngettext("{n} view", "{n} views", seen));
     }
     if (row.selected !== selected) {
       row.selected = selected;
@@ -98,17 +91,15 @@ export class PeoplePanel {
 
   _describe() {
     const one = this.store.selected();
-    if (!one) {
-      this._details.textContent = "";
-      return;
-    }
+    if (!one) return setText(this._details, "");
     const { x, y } = this.scene.metres(one.position);
     const { height } = this.scene.cylinderOf(one);
-    this._details.textContent = gettext("Person {person}: x {x} m, y {y} m, height {height} m", {
+    const words = gettext("Person {person}: x {x} m, y {y} m, height {height} m", {
       person: one.person,
       x: x.toFixed(3),
       y: y.toFixed(3),
       height: height.toFixed(2),
     });
+    setText(this._details, words);
   }
 }

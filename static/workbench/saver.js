@@ -136,21 +136,23 @@ export class Saver extends Emitter {
       if (!slot) continue;
       slot.edits += 1;
       slot.refused = null;
-      this._keep(frame, slot);
+      this._keep(frame, slot, true);
     }
     this._schedule(DELAY);
     this.emit("status");
   }
 
-  _keep(frame, slot) {
-    this._journal.write(frame, () => ({
+  /** @param {boolean} patient one edit of many; what was sent or asked is written at once */
+  _keep(frame, slot, patient = false) {
+    const record = () => ({
       base: plain(slot.base),
       ours: plain(this._store.frame(frame)),
       sending: slot.sending && { saveId: slot.sending.saveId, body: slot.sending.body },
       question: slot.question, // a crash must not answer it
       edits: slot.edits,
       at: Date.now(),
-    }));
+    });
+    this._journal.write(frame, record, patient);
   }
 
   /** The first edit starts the clock; later ones don't push it back. */

@@ -1,20 +1,20 @@
 /** Many changes, one repaint per animation frame: whoever is marked is asked to paint once. */
-export class Scheduler {
-  constructor() {
-    this._waiting = new Set();
-    this._frame = null;
-  }
+const waiting = new Set();
 
-  /** @param {{paint: () => void}} painter */
-  mark(painter) {
-    this._waiting.add(painter);
-    this._frame ??= requestAnimationFrame(() => this._run());
-  }
+/** @param {{paint: () => void}} painter */
+export function paintSoon(painter) {
+  if (waiting.size === 0) requestAnimationFrame(paintAll);
+  waiting.add(painter);
+}
 
-  _run() {
-    this._frame = null;
-    const painters = [...this._waiting];
-    this._waiting.clear();
-    for (const painter of painters) painter.paint();
+function paintAll() {
+  const painters = [...waiting];
+  waiting.clear();
+  for (const painter of painters) {
+    try {
+      painter.paint();
+    } catch (error) {
+      reportError(error); // the others are painted all the same
+    }
   }
 }

@@ -2,6 +2,7 @@ import { carriedOf } from "./annotation.js";
 import { element, setText } from "./dom.js";
 import { titleFor } from "./keys.js";
 import { gettext, ngettext } from "./messages.js";
+import { paintSoon } from "./scheduler.js";
 
 /**
  * All frames in a line: what state each is in, play, and a scrubber to look through them. A frame's mark says it
@@ -20,7 +21,7 @@ export class Timeline {
     saver.on("status", () => this._later());
     playback.on("change", () => this._later());
     this._later(store.numbers);
-    this._update();
+    this.paint();
   }
 
   _build(perform) {
@@ -95,13 +96,10 @@ export class Timeline {
   /** Of a long layer only the cells of changed frames are looked at: this runs for every step of a held key. */
   _later(frames = []) {
     for (const number of frames) this._changed.add(number);
-    this._request ??= requestAnimationFrame(() => {
-      this._request = null;
-      this._update();
-    });
+    paintSoon(this);
   }
 
-  _update() {
+  paint() {
     const { store, playback } = this;
     const unsaved = this.saver.unsavedFrames();
     for (const number of [...this._unsaved, ...unsaved]) this._changed.add(number);
