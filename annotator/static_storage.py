@@ -9,16 +9,28 @@ from rjsmin import jsmin
 from whitenoise.storage import CompressedManifestStaticFilesStorage
 
 OURS = {"geometry", "site", "workbench"}
+# As Django writes its patterns of imports; it has none for modules that are resolved now and imported later.
+RESOLVED = (
+    "*.js",
+    (
+        (
+            r"""(?P<matched>import\.meta\.resolve\(["'](?P<url>[./].*?)["']\))""",
+            """import.meta.resolve("%(url)s")""",
+        ),
+    ),
+)
 MINIFIERS = {".css": cssmin, ".js": jsmin}
 
 
 class ModuleManifestStaticFilesStorage(CompressedManifestStaticFilesStorage):
-    """Hashed names inside `import … from "./x.js";` too, so that no browser mixes old and new modules.
+    """Hashed names inside `import … from "./x.js";` and `import.meta.resolve("./x.js")` too, so that no
+    browser mixes old and new modules.
 
     Our own modules travel without their comments, which are a quarter of them.
     """
 
     support_js_module_import_aggregation = True
+    patterns = (*CompressedManifestStaticFilesStorage.patterns, RESOLVED)
 
     def _save(self, name: str, content: Any) -> str:
         path = PurePosixPath(name)

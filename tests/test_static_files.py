@@ -14,7 +14,7 @@ import pytest
 from tests.conftest import REPOSITORY
 
 OURS = ("geometry/", "site/", "workbench/")
-IMPORT = re.compile(r"""(?:from|import)\s*\(?["'](\.[^"']+)["']""")
+IMPORT = re.compile(r"""(?:from|import|import\.meta\.resolve)\s*\(?["'](\.[^"']+)["']""")
 
 
 @pytest.fixture(scope="module")

@@ -1,14 +1,13 @@
 import { asList, carriedOf } from "./annotation.js";
 import * as commands from "./commands.js";
 import { Dragging } from "./dragging.js";
+import { fetched } from "./fetched.js";
 import { Ghost } from "./ghost.js";
 import { Guard } from "./guard.js";
 import { Heads } from "./heads.js";
-import { showHelp } from "./help.js";
 import { keyFor } from "./keys.js";
 import { gettext } from "./messages.js";
 import { Moving } from "./moving.js";
-import { showSettings } from "./settings_dialog.js";
 import { Sightings } from "./sightings.js";
 import { Sizes } from "./sizes.js";
 import { Tour } from "./tour.js";
@@ -30,6 +29,8 @@ export class Actions {
     this.sizes = new Sizes(this);
     this.dragging = new Dragging(this);
     this.tour = new Tour(this);
+    this._help = fetched(notices, import.meta.resolve("./help.js"));
+    this._settingsDialog = fetched(notices, import.meta.resolve("./settings_dialog.js"));
     this.setControls = () => {};
     this.afterMove = () => {}; // a right click has put the selected person where it is
   }
@@ -66,8 +67,8 @@ export class Actions {
       outline: () => this.settings.set("outline", !this.settings.get("outline")),
       grid: () => this.settings.set("grid", !this.settings.get("grid")),
       directions: () => this.settings.set("directions", !this.settings.get("directions")),
-      help: () => showHelp(this.settings),
-      settings: () => showSettings(this.settings),
+      help: async () => (await this._help())?.showHelp(this.settings),
+      settings: async () => (await this._settingsDialog())?.showSettings(this.settings),
       controls: () => this.setControls(true),
       escape: () => this.escape(),
     };

@@ -4,6 +4,7 @@ import { bestViews } from "./crops.js";
 import { element, setText } from "./dom.js";
 import { between } from "./keyframes.js";
 import { gettext } from "./messages.js";
+import { paintSoon } from "./scheduler.js";
 import { unit } from "./unit.js";
 
 const VIEWS = 3; // crops per frame
@@ -42,11 +43,7 @@ export class Filmstrip {
   }
 
   _later() {
-    if (!this.shown) return;
-    this._request ??= requestAnimationFrame(() => {
-      this._request = null;
-      this._update();
-    });
+    if (this.shown) paintSoon(this);
   }
 
   _resize() {
@@ -56,10 +53,10 @@ export class Filmstrip {
     Object.assign(this._canvas, { width: Math.round(width * this._ratio), height: Math.round(height * this._ratio) });
     this._room = { width, height };
     this._painted.clear();
-    this._update();
+    this.paint();
   }
 
-  _update() {
+  paint() {
     const person = this.store.selection ?? this.walk.held;
     setText(this._note, person === null ? gettext("Select somebody to see the person over all frames here") : "");
     if (!this._room) return;

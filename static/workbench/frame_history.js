@@ -34,9 +34,8 @@ export class FrameHistory {
     store.on("change", () => this._shown && this._describe());
   }
 
-  /** Rows for the table of actions, by the ids of the key table. */
-  table() {
-    return { history: () => (this.element.hidden ? this.open() : this.close()) };
+  toggle() {
+    return this.element.hidden ? this.open() : this.close();
   }
 
   async open() {

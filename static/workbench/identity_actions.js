@@ -1,5 +1,5 @@
 import { NetworkError } from "./api.js";
-import { chooseIdentity } from "./identity_dialog.js";
+import { fetched } from "./fetched.js";
 import { keyFor } from "./keys.js";
 import { gettext, ngettext } from "./messages.js";
 
@@ -7,6 +7,7 @@ import { gettext, ngettext } from "./messages.js";
 export class IdentityActions {
   constructor({ scene, store, history, loader, panes, notices, guard }) {
     Object.assign(this, { scene, store, history, loader, panes, notices, guard });
+    this._dialog = fetched(notices, import.meta.resolve("./identity_dialog.js"));
     this._asking = false;
   }
 
@@ -27,9 +28,10 @@ export class IdentityActions {
     if (person === undefined || this.guard.refused() || this._asking) return;
     this._asking = true;
     try {
-      if (!(await this._loadAll())) return;
+      const dialog = await this._dialog();
+      if (!dialog || !(await this._loadAll())) return;
       const { scene, store, history } = this;
-      const patch = await chooseIdentity({ scene, store, history, mapColours: this.panes.options.mapColours }, { ...start, person });
+      const patch = await dialog.chooseIdentity({ scene, store, history, mapColours: this.panes.options.mapColours }, { ...start, person });
       if (patch) this._run(patch);
     } finally {
       this._asking = false;

@@ -1,5 +1,5 @@
 import { element, setText } from "./dom.js";
-import { chord, clash, groupTitle, keyName, keyTable, titleFor } from "./keys.js";
+import { chord, clash, groupTitle, keyName, keyTable } from "./keys.js";
 import { gettext } from "./messages.js";
 
 const MODIFIERS = ["Shift", "Control", "Alt", "Meta", "AltGraph"];
@@ -89,9 +89,4 @@ export class KeySheet {
   _explain() {
     setText(this.message, gettext("Click on a key to change it."));
   }
-}
-
-/** Tooltips of buttons say which key does the same. */
-export function nameKeys(root) {
-  for (const button of root.querySelectorAll("[data-action]")) button.title = titleFor(button.dataset.action);
 }

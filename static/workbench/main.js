@@ -10,7 +10,7 @@ const catalog = document.getElementById("catalog");
 if (catalog) useCatalog(JSON.parse(catalog.textContent));
 
 try {
-  buildWorkbench(root, await openSession({ api, token, mode, csrf }), { mode, home });
+  await buildWorkbench(root, await openSession({ api, token, mode, csrf }), { mode, home });
   root.dataset.ready = "true";
 } catch (error) {
   console.error(error);

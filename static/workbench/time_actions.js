@@ -2,7 +2,7 @@ import { CARRIED, changed } from "./annotation.js";
 import { freePosition, predictPeople } from "./carry.js";
 import * as commands from "./commands.js";
 import { ask } from "./dialogs.js";
-import { chooseFill } from "./fill_dialog.js";
+import { fetched } from "./fetched.js";
 import { keyFor } from "./keys.js";
 import { loadMissing } from "./load_missing.js";
 import { gettext, ngettext } from "./messages.js";
@@ -15,6 +15,7 @@ const PATHS = ["none", "selected", "all"];
 export class TimeActions {
   constructor({ scene, store, history, loader, settings, panes, notices, guard, walk, playback }) {
     Object.assign(this, { scene, store, history, loader, settings, panes, notices, guard, walk, playback });
+    this._dialog = fetched(notices, import.meta.resolve("./fill_dialog.js"));
     this._asked = new Set(); // people in one frame only, shown once
   }
 
@@ -64,9 +65,10 @@ export class TimeActions {
 
   async fill() {
     if (this.guard.refused()) return;
-    if (!(await loadMissing(this, this._between()))) return;
+    const dialog = await this._dialog();
+    if (!dialog || !(await loadMissing(this, this._between()))) return;
     const { store, scene, panes } = this;
-    const edits = await chooseFill(store, scene, panes.options.mapColours, store.selection ?? this.walk.held);
+    const edits = await dialog.chooseFill(store, scene, panes.options.mapColours, store.selection ?? this.walk.held);
     if (edits === null) return;
     if (!edits.length) return this.notices.say(gettext("Nothing to fill: validate a person in two frames, with frames between them"));
     this.history.run(commands.fill(store, edits));

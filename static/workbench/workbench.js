@@ -2,11 +2,10 @@ import { Actions } from "./actions.js";
 import { Bar } from "./bar.js";
 import { directionItems } from "./directions.js";
 import { element } from "./dom.js";
-import { Filmstrip } from "./filmstrip.js";
-import { FrameHistory } from "./frame_history.js";
+import { fetched } from "./fetched.js";
 import { Hints } from "./hints.js";
 import { IdentityActions } from "./identity_actions.js";
-import { nameKeys } from "./key_sheet.js";
+import { nameKeys } from "./key_titles.js";
 import { Keyboard } from "./keyboard.js";
 import { useKeys } from "./keys.js";
 import { Layout } from "./layout.js";
@@ -24,7 +23,6 @@ import { TimeActions } from "./time_actions.js";
 import { Timeline } from "./timeline.js";
 import { UndoActions } from "./undo_actions.js";
 import { Views } from "./views.js";
-import { ViewsMenu } from "./views_menu.js";
 import { Walk } from "./walk.js";
 import { WarningActions } from "./warning_actions.js";
 import { warningItems } from "./warning_marks.js";
@@ -32,18 +30,21 @@ import { Warnings } from "./warnings.js";
 import { WarningsPanel } from "./warnings_panel.js";
 
 /**
- * Builds the page over a session inside `root` and connects its parts.
+ * Builds the page over a session inside `root` and connects its parts. What few need, and nobody without the
+ * server, is fetched when it is needed.
  * @param {import("./session.js").Session} session
  * @param {{mode: string, home: string}} settings
  */
-export function buildWorkbench(root, session, { mode, home }) {
+export async function buildWorkbench(root, session, { mode, home }) {
   const { scene, store, images, activity } = session;
   const settings = new Settings();
   const panes = new Panes({ scene, store, images, settings, options: startOptions() });
   panes.addExtra((pane) => directionItems(panes, pane));
   settings.on("change", () => panes.markPeople(true));
   const notices = new Notices();
-  const walk = new Walk({ ...session, notices, finish: () => finish({ ...session, walk, notices, home }) });
+  const finishing = fetched(notices, import.meta.resolve("./finish.js"));
+  const finish = async () => (await finishing())?.finishAssignment({ ...session, walk, notices, home });
+  const walk = new Walk({ ...session, notices, finish });
   const actions = new Actions({ ...session, settings, panes, notices, walk });
   const identity = new IdentityActions({ ...session, panes, notices, guard: actions.guard });
   actions.use(identity.table());
@@ -60,41 +61,53 @@ export function buildWorkbench(root, session, { mode, home }) {
   const bar = new Bar({ ...session, panes, perform, home, signIn: signInAddress(mode, home) });
   const panel = new PeoplePanel({ scene, store, select: (person) => actions.select(person) });
   const stage = element("main", { className: "stage" });
-  const filmstrip = new Filmstrip({ ...session, walk, panes, settings });
   const timeline = new Timeline({ ...session, walk, playback, perform });
-  root.replaceChildren(bar.element, stage, filmstrip.element, timeline.element, notices.element);
+  root.replaceChildren(bar.element, stage, timeline.element, notices.element);
   actions.pointer = new Pointer(panes, actions);
   connectKeyboard(actions, bar, perform, settings);
   const layout = new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
   chooseViews(root, actions, { panes, layout, settings, notices });
-  if (mode === "tutorial") startTutorial(panel, { ...session, panes, walk, home });
-  else {
-    const frameHistory = new FrameHistory({ ...session, panes, notices, guard: actions.guard });
-    actions.use(frameHistory.table());
+  showFilmstrip(timeline, notices, { ...session, walk, panes, settings });
+  if (mode !== "tutorial") {
     const list = warn(session, { settings, panes, notices, walk, actions, identity });
-    panel.element.append(panelTools(store, perform, actions.heads), list, frameHistory.element, new Hints({ store, panes, settings }).element);
+    panel.element.append(panelTools(store, perform, actions.heads), list, new Hints({ store, panes, settings }).element);
+    actions.use(frameHistory(panel, { ...session, panes, notices, guard: actions.guard }));
   }
   watch(session, panes, notices);
   walk.carryInto(store.current);
-}
-
-// What few need, and nobody without the server, is fetched when it is needed.
-
-async function finish(parts) {
-  const { finishAssignment } = await import("./finish.js");
-  return finishAssignment(parts);
-}
-
-async function ask(scene, store, conflict) {
-  const { askAboutConflicts } = await import("./conflicts.js");
-  return askAboutConflicts(scene, store, conflict);
+  if (mode === "tutorial") await startTutorial(panel, { ...session, panes, walk, home });
 }
 
 async function startTutorial(panel, parts) {
-  const { Tutorial } = await import("./tutorial.js");
+  const { Tutorial } = await import("./tutorial.js"); // without it the page is not started: main.js says so
   const tutorial = new Tutorial(parts);
   panel.element.prepend(tutorial.element);
   tutorial.start();
+}
+
+/** A strip that does not arrive is switched off, so that the next press tries again. */
+function showFilmstrip(timeline, notices, parts) {
+  const { settings } = parts;
+  const make = ({ Filmstrip }) => {
+    const filmstrip = new Filmstrip(parts);
+    timeline.element.before(filmstrip.element);
+    return filmstrip;
+  };
+  const filmstrip = fetched(notices, import.meta.resolve("./filmstrip.js"), make);
+  settings.watch("filmstrip", async (shown) => {
+    if (shown && !(await filmstrip())) settings.set("filmstrip", false);
+  });
+}
+
+/** Rows for the table of actions. */
+function frameHistory(panel, parts) {
+  const make = ({ FrameHistory }) => {
+    const made = new FrameHistory(parts);
+    panel.element.append(made.element);
+    return made;
+  };
+  const history = fetched(parts.notices, import.meta.resolve("./frame_history.js"), make);
+  return { history: async () => (await history())?.toggle() };
 }
 
 /** F6 gives Tab, Space and Enter to the buttons; Escape takes them back. */
@@ -115,10 +128,14 @@ function connectKeyboard(actions, bar, perform, settings) {
 /** What is seen and how, as it was chosen last. */
 function chooseViews(root, actions, { panes, layout, settings, notices }) {
   const views = new Views({ panes, layout, settings, notices });
-  const menu = new ViewsMenu(views);
-  root.append(menu.element);
+  const make = ({ ViewsMenu }) => {
+    const made = new ViewsMenu(views);
+    root.append(made.element);
+    return made;
+  };
+  const menu = fetched(notices, import.meta.resolve("./views_menu.js"), make);
   actions.views = views;
-  actions.use({ ...views.table(), views: () => menu.toggle() });
+  actions.use({ ...views.table(), views: async () => (await menu())?.toggle() });
   for (const name of DISPLAYED) settings.watch(name, (value) => panes.set(name, value));
 }
 
@@ -134,28 +151,45 @@ function warn(session, { settings, panes, notices, walk, actions, identity }) {
 }
 
 /** Things that happen outside the page's own controls. */
-function watch({ saver, store, scene, images, activity }, panes, notices) {
-  let asking = Promise.resolve();
-  const askInTurn = (conflict) => {
-    asking = asking.then(async () => saver.resolve(conflict.frame, await ask(scene, store, conflict)));
-  };
-  saver.conflicts().forEach(askInTurn);
-  saver.on("conflict", askInTurn);
+function watch(session, panes, notices) {
+  const { saver, store, journal, images, activity } = session;
+  const askAgain = askAboutConflicts(session, notices);
   saver.on("renumber", ({ from, to }) =>
     notices.say(gettext("Person {from} is {to} now: somebody else had taken the number meanwhile", { from, to })),
   );
   const back = () => {
     saver.wake();
     images.retryAll();
+    askAgain();
   };
   window.addEventListener("online", back);
   window.addEventListener("focus", back);
-  document.addEventListener("visibilitychange", () => document.visibilityState === "hidden" && saver.sendOnLeaving());
-  window.addEventListener("pagehide", () => saver.sendOnLeaving());
+  const leave = () => {
+    saver.sendOnLeaving();
+    journal.hurry();
+  };
+  document.addEventListener("visibilitychange", () => document.visibilityState === "hidden" && leave());
+  window.addEventListener("pagehide", leave);
   for (const name of ["pointermove", "pointerdown", "wheel"]) {
     document.addEventListener(name, () => activity.note(store.current), { passive: true });
   }
   document.documentElement.addEventListener("themechange", () => panes.set("mapColours", mapColours()));
+}
+
+/** One question after the other. @returns {() => void} asks those again that could not be asked */
+function askAboutConflicts({ saver, scene, store }, notices) {
+  const conflicts = fetched(notices, import.meta.resolve("./conflicts.js"));
+  const waiting = [];
+  let asking = Promise.resolve();
+  const ask = async (conflict) => {
+    const dialog = await conflicts();
+    if (dialog) saver.resolve(conflict.frame, await dialog.askAboutConflicts(scene, store, conflict));
+    else waiting.push(conflict);
+  };
+  const askInTurn = (conflict) => (asking = asking.then(() => ask(conflict)));
+  saver.conflicts().forEach(askInTurn);
+  saver.on("conflict", askInTurn);
+  return () => waiting.splice(0).forEach(askInTurn);
 }
 
 function startOptions() {

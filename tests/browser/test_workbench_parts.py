@@ -1,0 +1,72 @@
+"""What the workbench loads when it is opened, and the parts that come when they are needed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+from rcssmin import cssmin
+from rjsmin import jsmin
+
+from tests.browser.bench import Bench
+from tests.browser.street import GRID
+
+pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
+
+BUDGET = 250_000  # bytes of script and style, uncompressed
+PROGRAM = """
+() => performance.getEntriesByType("resource").map(({name}) => new URL(name).pathname)
+  .filter((path) => /\\.(js|css)$/.test(path))
+"""
+ENOUGH = 20  # files; fewer would mean that something else than the workbench was counted
+
+
+def weight(path: Path) -> int:
+    """Bytes of a file as it is served: without comments."""
+    shorten = cssmin if path.suffix == ".css" else jsmin
+    return len(shorten(path.read_text()).encode())
+
+
+def test_a_cold_opening_loads_less_than_250_kb_of_script_and_style(bench: Callable[..., Bench]) -> None:
+    page = bench().open().page
+    page.wait_for_load_state("networkidle")
+    files = [Path(path.removeprefix("/")) for path in page.evaluate(PROGRAM)]
+    assert len(files) > ENOUGH
+    assert sum(weight(path) for path in files) < BUDGET
+
+
+PARTS = [
+    ("?", "help", "dialog:modal"),
+    (",", "settings_dialog", "dialog:modal"),
+    ("r", "identity_dialog", "dialog:modal"),
+    ("u", "views_menu", ".views-menu:popover-open"),
+    ("m", "filmstrip", ".filmstrip"),
+    ("Shift+h", "frame_history", ".frame-history"),
+]
+
+
+@pytest.mark.parametrize(("key", "module", "shown"), PARTS)
+def test_a_part_that_does_not_arrive_says_so_and_comes_at_the_next_try(
+    bench: Callable[..., Bench], key: str, module: str, shown: str
+) -> None:
+    opened = bench(people=2).open()
+    page = opened.page
+    pattern = f"**/workbench/{module}*.js"
+    page.route(pattern, lambda route: route.abort())
+    opened.press("Tab", key)
+    expect(page.locator(".notices")).to_contain_text("did not arrive")
+    expect(page.locator(shown)).to_have_count(0)
+    page.unroute(pattern)
+    opened.press(key)
+    expect(page.locator(shown)).to_be_visible()
+
+
+def test_edits_go_on_and_are_saved_while_a_part_does_not_arrive(bench: Callable[..., Bench]) -> None:
+    opened = bench(people=1).open()
+    before = opened.stored()[0].position
+    opened.page.route("**/workbench/help*.js", lambda route: route.abort())
+    opened.press("Tab", "ArrowLeft", "?", "ArrowLeft")
+    expect(opened.page.locator(".notices")).to_contain_text("Nothing is lost")
+    assert abs(opened.stored()[0].position - before) in {2, 2 * GRID.columns}
