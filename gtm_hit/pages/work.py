@@ -16,6 +16,7 @@ from gtm_hit.models import Layer, Worker
 from gtm_hit.ops import assignments, parts, tokens, tutorial, workers
 from gtm_hit.pages.access import staff_only
 from gtm_hit.pages.catalog import workbench_catalog
+from gtm_hit.pages.modules import imported_by
 
 # The names under which platforms put their worker's id into the address.
 ID_PARAMETERS = ["worker_id", "workerId", "PROLIFIC_PID", "participant_id"]
@@ -141,7 +142,8 @@ def layer(request: HttpRequest, slug: str, name: str) -> HttpResponse:
 
 
 def workbench(request: HttpRequest, **context: str) -> HttpResponse:
-    return render(request, "workbench.html", {**context, "catalog": workbench_catalog(request)})
+    parts = {"catalog": workbench_catalog(request), "modules": imported_by("workbench/main.js")}
+    return render(request, "workbench.html", {**context, **parts})
 
 
 urlpatterns = [

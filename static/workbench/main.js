@@ -1,16 +1,16 @@
 import { element } from "./dom.js";
 import { gettext, useCatalog } from "./messages.js";
 import { openSession } from "./session.js";
+import { started } from "./start.js";
 import { buildWorkbench } from "./workbench.js";
 
-const { api, token, mode, home } = document.body.dataset;
+const { mode, home } = document.body.dataset;
 const root = document.getElementById("workbench");
-const csrf = document.querySelector("meta[name=csrf-token]")?.content ?? "";
 const catalog = document.getElementById("catalog");
 if (catalog) useCatalog(JSON.parse(catalog.textContent));
 
 try {
-  await buildWorkbench(root, await openSession({ api, token, mode, csrf }), { mode, home });
+  await buildWorkbench(root, await openSession(await started), { mode, home });
   root.dataset.ready = "true";
 } catch (error) {
   console.error(error);

@@ -1,7 +1,5 @@
 import { Activity } from "./activity.js";
-import { Api } from "./api.js";
 import { History } from "./history.js";
-import { Images } from "./images.js";
 import { Journal } from "./journal.js";
 import { withRefill } from "./keyframes.js";
 import { Loader } from "./loader.js";
@@ -11,17 +9,13 @@ import { Store } from "./store.js";
 
 /**
  * Everything behind the page: what is annotated, how it is kept, and the pictures. Knows no page.
- * @typedef {{api: Api, scene: Scene, store: Store, history: History, saver: Saver, loader: Loader,
- *            journal: Journal, images: Images, activity: Activity}} Session
+ * @typedef {{api: import("./api.js").Api, scene: Scene, store: Store, history: History, saver: Saver, loader: Loader,
+ *            journal: Journal, images: import("./images.js").Images, activity: Activity}} Session
  */
 
-/** @param {{api: string, token: string, mode: string, csrf: string}} settings @returns {Promise<Session>} */
-export async function openSession(settings) {
-  const api = new Api({ base: settings.api, token: settings.token, mode: settings.mode, csrf: settings.csrf });
-  const scene = new Scene(await api.scene());
-  const first = firstUnfinished(scene);
-  const images = new Images(api, scene.frames);
-  images.want([first]); // pictures take longest, so they are on their way before anything else is asked for
+/** @param started what start.js has asked for already @returns {Promise<Session>} */
+export async function openSession({ api, scene: answer, first, images }) {
+  const scene = new Scene(answer);
   const store = new Store(scene.frames.map(({ number }) => number), scene.nextPerson);
   const loader = new Loader({ api, scene, store });
   const [states, journal] = await Promise.all([loader.start(first), Journal.open(layerKey(scene))]);
@@ -35,11 +29,6 @@ export async function openSession(settings) {
   await recover(journal, saver, loader, history);
   store.open(first);
   return { api, scene, store, history, saver, loader, journal, images, activity };
-}
-
-/** Continue where one was. */
-function firstUnfinished({ frames }) {
-  return (frames.find(({ done }) => !done) ?? frames[0]).number;
 }
 
 /** Under which name edits are kept; the tutorial keeps none. */

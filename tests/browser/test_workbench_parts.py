@@ -37,6 +37,15 @@ def test_a_cold_opening_loads_less_than_250_kb_of_script_and_style(bench: Callab
     assert sum(weight(path) for path in files) < BUDGET
 
 
+def test_a_cold_opening_names_every_module_before_it_is_imported(bench: Callable[..., Bench]) -> None:
+    page = bench().open().page
+    named = page.evaluate("[...document.querySelectorAll('link[rel=modulepreload]')].map(({href}) => href)")
+    loaded = page.evaluate("performance.getEntriesByType('resource').map(({name}) => name)")
+    modules = {name for name in loaded if "/workbench/" in name or "/geometry/" in name}
+    unnamed = {name for name in modules if name.endswith(".js")} - set(named)
+    assert [name.rsplit("/")[-1] for name in unnamed] == ["main.js"]
+
+
 PARTS = [
     ("?", "help", "dialog:modal"),
     (",", "settings_dialog", "dialog:modal"),

@@ -1,0 +1,27 @@
+import { Api } from "./api.js";
+import { Images } from "./images.js";
+
+/**
+ * What takes longest is asked for first: this module is small, and the scene and the first pictures are on their
+ * way while the browser still fetches the others.
+ * @returns {Promise<{api: Api, scene: object, first: number, images: Images}>} `scene` as the server answers it;
+ *   `first`: the frame to open
+ */
+async function start() {
+  const { api: base, token, mode } = document.body.dataset;
+  const csrf = document.querySelector("meta[name=csrf-token]")?.content ?? "";
+  const api = new Api({ base, token, mode, csrf });
+  const scene = await api.scene();
+  const first = firstUnfinished(scene);
+  const images = new Images(api, scene.frames);
+  images.want([first]);
+  return { api, scene, first, images };
+}
+
+/** Continue where one was. */
+function firstUnfinished({ frames }) {
+  return (frames.find(({ done }) => !done) ?? frames[0]).number;
+}
+
+export const started = start();
+started.catch(() => {}); // whoever waits for it says why
