@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 import uuid
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -110,6 +111,7 @@ def measure(slug: str, middle: int) -> dict[str, tuple[int, float]]:
         "dataset page": f"/datasets/{slug}/",
         "layers page": f"/datasets/{slug}/layers/",
         "batches page": f"/datasets/{slug}/batches/",
+        "exports page": "/exports/",
         "annotations of 20 frames": listed,
         "100 frames of REST": f"/api/v1/datasets/{slug}/frames/?from={middle}",
     }.items():
@@ -146,19 +148,22 @@ def export(slug: str) -> dict[str, float]:
     folder = Path(os.environ["DATA_DIR"]) / "out"
     began: dict[str, float] = {}
     ended: dict[str, float] = {}
-    start, cpu = time.perf_counter(), time.process_time()
+    start, cpu, own = time.perf_counter(), time.process_time(), time.thread_time()
     used: dict[str, float] = {}
+    used_here: dict[str, float] = {}
 
     def report(phase: str, done: int, total: int) -> None:
         now = time.perf_counter() - start
         began.setdefault(phase, now)
         ended[phase] = now
         used[phase] = time.process_time() - cpu
+        used_here[phase] = time.thread_time() - own
 
     manifest = exporting.export_layer(layer, folder, folder.with_name("partial"), report)
     frames = manifest.counts["frames"]
     return {
         "frames/s of files and zip": frames / (ended[exporting.FRAMES] - began[exporting.FRAMES]),
+        "frames/s of files, processor time": frames / used_here[exporting.FRAMES],
         "frames/s of files and zip, processor time": frames / used[exporting.FRAMES],
         "frames/s in all": frames / (time.perf_counter() - start),
         "seconds to the first report": min(began.values()),
@@ -184,13 +189,58 @@ def import_back(slug: str) -> dict[str, float]:
     }
 
 
+def quality(slug: str) -> dict[str, float]:
+    """The statistics of the layer."""
+    from gtm_hit.models import Layer
+    from gtm_hit.ops.quality.statistics import layer_statistics
+
+    layer = Layer.objects.select_related("dataset").get(dataset__slug=slug, name="truth")
+    start = time.perf_counter()
+    layer_statistics(layer)
+    return {"seconds": time.perf_counter() - start, "peak MB of the process": peak()}
+
+
+def compare(slug: str) -> dict[str, float]:
+    """All frames of the layer against those that were imported, as `manage.py comparelayers` does."""
+    from gtm_hit.models import Layer
+    from gtm_hit.ops.quality import comparing
+
+    layers = Layer.objects.select_related("dataset").filter(dataset__slug=slug)
+    start = time.perf_counter()
+    comparing.compare(layers.get(name="truth"), layers.get(name="again"))
+    return {"seconds": time.perf_counter() - start, "peak MB of the process": peak()}
+
+
+def release(slug: str) -> dict[str, float]:
+    """In the formats releases have by default."""
+    from gtm_hit.models import Layer
+    from gtm_hit.ops import releases
+
+    layer = Layer.objects.select_related("dataset").get(dataset__slug=slug, name="truth")
+    partial = Path(os.environ["DATA_DIR"]) / "exports" / "release.partial-0-0"
+    start, cpu = time.perf_counter(), time.process_time()
+    releases.make_release(releases.Order(layer, "For research only."), partial, lambda *_: None)
+    return {
+        "seconds": time.perf_counter() - start,
+        "seconds, processor time": time.process_time() - cpu,
+        "peak MB of the process": peak(),
+    }
+
+
 def peak() -> float:
     """Of this process alone: what rusage tells begins with the parent's."""
     status = Path("/proc/self/status").read_text(encoding="ascii")
     return int(status.split("VmHWM:")[1].split()[0]) / 1024
 
 
-STEPS = {"build": build, "measure": measure, "export": export, "import": import_back}
+LONG_WORK: dict[str, Callable[[str], dict[str, float]]] = {
+    "export": export,
+    "import": import_back,
+    "statistics": quality,
+    "comparison": compare,
+    "release": release,
+}
+STEPS: dict[str, Callable[..., Any]] = {"build": build, "measure": measure, **LONG_WORK}
 
 
 def apart(folder: str, step: str, *arguments: Any) -> Any:
@@ -218,7 +268,7 @@ def main(long: int, short: int) -> None:
         for name in found["short"]:
             (few, quick), (many, slow) = found["short"][name], found["long"][name]
             print(f"{name:26} {few:3} q {quick:7.1f} ms   {many:3} q {slow:7.1f} ms", flush=True)
-        for step in ("export", "import"):
+        for step in LONG_WORK:
             for name, value in apart(folder, step, "long").items():
                 print(f"{step}: {name:38} {value:8.1f}", flush=True)
 
