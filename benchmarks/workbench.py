@@ -344,7 +344,7 @@ def metric(client: Any, name: str) -> float:
 
 
 def report(title: str, figures: dict[str, float]) -> None:
-    print(title)
+    print(title, flush=True)
     for name, value in figures.items():
         print(f"  {name:<36}{value:>9.1f}")
 

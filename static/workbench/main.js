@@ -1,13 +1,11 @@
 import { element } from "./dom.js";
-import { gettext, useCatalog } from "./messages.js";
+import { gettext } from "./messages.js";
 import { openSession } from "./session.js";
 import { started } from "./start.js";
 import { buildWorkbench } from "./workbench.js";
 
 const { mode, home } = document.body.dataset;
 const root = document.getElementById("workbench");
-const catalog = document.getElementById("catalog");
-if (catalog) useCatalog(JSON.parse(catalog.textContent));
 
 try {
   await buildWorkbench(root, await openSession(await started), { mode, home });

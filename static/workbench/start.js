@@ -1,5 +1,6 @@
 import { Api } from "./api.js";
 import { Images } from "./images.js";
+import { useCatalog } from "./messages.js";
 
 /**
  * What takes longest is asked for first: this module is small, and the scene and the first pictures are on their
@@ -22,6 +23,9 @@ async function start() {
 function firstUnfinished({ frames }) {
   return (frames.find(({ done }) => !done) ?? frames[0]).number;
 }
+
+const catalog = document.getElementById("catalog");
+if (catalog) useCatalog(JSON.parse(catalog.textContent)); // before anything can have to be said
 
 export const started = start();
 started.catch(() => {}); // whoever waits for it says why

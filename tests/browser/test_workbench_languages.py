@@ -64,7 +64,7 @@ def test_every_number_gets_its_plural_form(
 
 
 COUNT = """async (numbers) => {
-  const main = document.querySelector("script[type=module]").src;
+  const main = document.querySelector("script[src*=main]").src;
   const { ngettext } = await import(main.replace("main.js", "messages.js"));
   return numbers.map((n) => ngettext("{n} person", "{n} people", n));
 }"""
