@@ -7,20 +7,33 @@ import sys
 from pathlib import Path
 
 
+PURE = {"evaluate"}  # compares files: needs neither a key nor a data folder
+
+
 def main() -> None:
     os.environ.setdefault("DJANGO_SETTINGS_MODULE", "annotator.settings")
     provide_key()
+    from django.conf import settings
+    from django.core.exceptions import ImproperlyConfigured
     from django.core.management import execute_from_command_line
 
+    try:
+        if sys.argv[1:2] and sys.argv[1] not in {*PURE, "help", "--help", "--version"}:
+            # SQLite makes its file, but not the folder around it.
+            settings.DATA_DIR.mkdir(parents=True, exist_ok=True)
+    except ImproperlyConfigured as error:
+        sys.exit(str(error))
+    except OSError as error:
+        sys.exit(f"DATA_DIR {error.filename} cannot be made: {error.strerror}")
     execute_from_command_line(sys.argv)
 
 
 def provide_key() -> None:
-    """Commands typed beside a local start use its key; `evaluate` signs nothing, so any key will do."""
+    """Commands typed beside a local start use its key; a pure one signs nothing, so any key will do."""
     if os.environ.get("SECRET_KEY"):
         return
     kept = Path(os.environ.get("DATA_DIR") or Path(__file__).resolve().parent / "var") / "secret-key"
-    if sys.argv[1:2] == ["evaluate"]:
+    if PURE & set(sys.argv[1:2]):
         os.environ["SECRET_KEY"] = secrets.token_urlsafe(48)
     elif kept.is_file() and not os.environ.get("DEBUG"):
         os.environ["SECRET_KEY"] = kept.read_text(encoding="utf-8").strip()
