@@ -6,7 +6,6 @@ import secrets
 import sys
 from pathlib import Path
 
-
 PURE = {"evaluate"}  # compares files: needs neither a key nor a data folder
 
 
