@@ -1,9 +1,13 @@
 import { groundLine } from "../geometry/ground.js";
 import { annotation } from "./annotation.js";
+import { fetched } from "./fetched.js";
 import { crossItem, lineItem, readoutItem } from "./hints_on_ground.js";
 import { CYAN, LOOKS } from "./looks.js";
 import { gettext } from "./messages.js";
 import { spotOn, spotWords } from "./spot.js";
+
+const AGAIN = 10_000; // ms until a part that did not arrive is asked for again
+const SILENT = { say() {} }; // a pointer that moves asks for nothing, so nobody is told what did not arrive
 
 /**
  * What a click would place, before anything is placed: the cylinder in every view, the line on the ground
@@ -15,6 +19,8 @@ export class Ghost {
     this._shown = null; // {pane, at, spot, words, annotation, look}
     panes.addExtra((pane) => this._items(pane));
     this._doubtAt = null; // fetched when the pointer comes first
+    this._doubtPart = fetched(SILENT, import.meta.resolve("./doubt.js"));
+    this._fetching = false;
     store.on("frame", () => this.hide());
     heads.on("change", () => this.hide());
     settings.watch("ghost", (on) => on || this.hide());
@@ -55,9 +61,11 @@ export class Ghost {
   }
 
   async _fetchDoubt() {
-    const { doubtAt } = await import("./doubt.js");
-    if (this._doubtAt) return;
-    this._doubtAt = doubtAt;
+    if (this._fetching) return;
+    this._fetching = true;
+    const part = await this._doubtPart();
+    if (!part) return void setTimeout(() => (this._fetching = false), AGAIN);
+    this._doubtAt = part.doubtAt;
     const shown = this._shown;
     this._shown = null;
     if (shown) this.hover(shown.pane, shown.at, shown.over);

@@ -1,4 +1,5 @@
 import { carriedOf } from "./annotation.js";
+import { fetched } from "./fetched.js";
 import { keyFor } from "./keys.js";
 import { gettext } from "./messages.js";
 
@@ -14,6 +15,8 @@ export class Round {
     store.on("frame", () => (this._passed = []));
     store.on("selection", ({ after }) => this.on && after !== null && !panes.zoomed && panes.zoom(true));
     actions.afterMove = () => this.on && this._advance();
+    const make = ({ WhoIs }) => new WhoIs({ scene: actions.scene, store, images: walk.images, panes });
+    this._showWho = fetched(notices, import.meta.resolve("./whois.js"), make);
   }
 
   get on() {
@@ -40,14 +43,6 @@ export class Round {
     if (this._store.selection === null) this._selectNext();
     this._panes.zoom(true);
     if (this._store.selection === null) this._sayAllSeen();
-  }
-
-  /** Who needs it for the first time fetches it. */
-  async _showWho() {
-    if (this._who) return;
-    this._who = true;
-    const { WhoIs } = await import("./whois.js");
-    new WhoIs({ scene: this._actions.scene, store: this._store, images: this._walk.images, panes: this._panes });
   }
 
   _leave() {

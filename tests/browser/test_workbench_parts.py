@@ -72,6 +72,24 @@ def test_a_part_that_does_not_arrive_says_so_and_comes_at_the_next_try(
     expect(page.locator(shown)).to_be_visible()
 
 
+def test_a_click_places_although_nothing_tells_how_far_it_can_be_off(bench: Callable[..., Bench]) -> None:
+    opened = bench(people=1, marked=False)
+    opened.page.route("**/workbench/doubt*.js", lambda route: route.abort())
+    opened.open().click_ground(0)
+    assert opened.rows() == ["0"]
+
+
+def test_going_one_by_one_works_although_the_corner_pictures_do_not_arrive(
+    bench: Callable[..., Bench],
+) -> None:
+    opened = bench(people=2).open()
+    opened.page.route("**/workbench/whois*.js", lambda route: route.abort())
+    opened.press("n", "a")
+    expect(opened.page.locator(".notices")).to_contain_text("did not arrive")
+    opened.press("Enter", "Enter")
+    assert [one.state for one in opened.stored(1)] == ["validated", "validated"]
+
+
 def test_edits_go_on_and_are_saved_while_a_part_does_not_arrive(bench: Callable[..., Bench]) -> None:
     opened = bench(people=1).open()
     before = opened.stored()[0].position
