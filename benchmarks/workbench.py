@@ -204,7 +204,7 @@ def arrow_keys(browser: Browser, address: str) -> dict[str, float]:
     page = opened(browser, address)
     requests: list[str] = []
     page.keyboard.press("Tab")
-    page.wait_for_timeout(300)
+    page.wait_for_timeout(2000)  # until the parts that come after the first action are here
     page.evaluate(TIMER)
     client = page.context.new_cdp_session(page)
     # Processor time of the page's own thread: with other programs at work, the clock counts their time, too.

@@ -1,7 +1,7 @@
 import { asList, carriedOf } from "./annotation.js";
 import * as commands from "./commands.js";
 import { Dragging } from "./dragging.js";
-import { fetched } from "./fetched.js";
+import { fetchedDialog } from "./fetched.js";
 import { Ghost } from "./ghost.js";
 import { Guard } from "./guard.js";
 import { Heads } from "./heads.js";
@@ -29,8 +29,8 @@ export class Actions {
     this.sizes = new Sizes(this);
     this.dragging = new Dragging(this);
     this.tour = new Tour(this);
-    this._help = fetched(notices, import.meta.resolve("./help.js"));
-    this._settingsDialog = fetched(notices, import.meta.resolve("./settings_dialog.js"));
+    this._help = fetchedDialog(notices, import.meta.resolve("./help.js"));
+    this._settingsDialog = fetchedDialog(notices, import.meta.resolve("./settings_dialog.js"));
     this.setControls = () => {};
     this.afterMove = () => {}; // a right click has put the selected person where it is
   }

@@ -1,8 +1,13 @@
 import { gettext } from "./messages.js";
 
 const IMPORTED = /\bfrom\s*"(\.[^"]+)"/g;
+const BESIDE = 500; // ms after the first action: opening is over, and nobody misses the network
+const LEAVING = 600; // ms; a page that is being left stops its requests, but runs no timers any more
+const MEANT_FOR_IT = 1000; // ms in which keys pressed after asking for a dialog are not meant for the page
 // Whatever the page itself is made of is here before this line is run.
 const present = new Set(performance.getEntriesByType("resource").map(({ name }) => name));
+const parts = new Set(); // addresses
+let dialogs = 0; // under way
 
 /**
  * A part that few need, fetched when it is needed. Where it does not arrive, the annotator is told and nothing
@@ -12,19 +17,47 @@ const present = new Set(performance.getEntriesByType("resource").map(({ name }) 
  * @param {(module: object) => object} make what the part is; called once
  * @returns {() => Promise<object|null>} the part, always the same; null: it did not arrive
  */
-export function fetched(notices, address, make = (module) => module) {
+export function fetched(notices, address, make = (module) => module, loaded = load) {
   let part = null;
+  parts.add(address);
   return async () => {
     if (part) return part;
-    const module = await load(address).catch((error) => console.warn("a part did not arrive", error));
-    if (!module) notices.say(gettext("This part of the page did not arrive: the server does not answer. Nothing is lost – please try again"));
+    const module = await loaded(address).catch((error) => console.warn("a part did not arrive", error));
+    if (!module) {
+      await later(LEAVING);
+      notices.say(gettext("This part of the page did not arrive: the server does not answer. Nothing is lost – please try again"));
+    }
     return module ? (part ??= make(module)) : null;
   };
 }
 
+/** A part that is a dialog: for a moment keys wait for it instead of changing something behind it. */
+export function fetchedDialog(notices, address) {
+  return fetched(notices, address, undefined, async () => {
+    const module = load(address);
+    dialogs += 1;
+    await Promise.race([module, later(MEANT_FOR_IT)]).finally(() => (dialogs -= 1));
+    return module;
+  });
+}
+
+export function dialogArrives() {
+  return dialogs > 0;
+}
+
+/** Fetch all parts beside the work, once somebody works: they open at once then, and without the server. */
+export async function fetchParts() {
+  await later(BESIDE);
+  for (const address of parts) await load(address).catch(() => null); // it is asked for again when it is needed
+}
+
 /** A browser never asks again for a module that once failed to arrive, so it is imported when all of it is here. */
 async function load(address) {
-  await reach(address, new Set(present));
+  if (!present.has(address)) {
+    const seen = new Set(present);
+    await reach(address, seen);
+    seen.forEach((one) => present.add(one));
+  }
   return import(address);
 }
 
@@ -35,4 +68,8 @@ async function reach(address, seen) {
   const text = await answer.text();
   const imported = [...text.matchAll(IMPORTED)].map(([, relative]) => new URL(relative, address).href);
   await Promise.all(imported.filter((one) => !seen.has(one)).map((one) => reach(one, seen)));
+}
+
+function later(ms) {
+  return new Promise((done) => setTimeout(done, ms));
 }

@@ -1,5 +1,5 @@
 import { NetworkError } from "./api.js";
-import { fetched } from "./fetched.js";
+import { fetchedDialog } from "./fetched.js";
 import { keyFor } from "./keys.js";
 import { gettext, ngettext } from "./messages.js";
 
@@ -7,7 +7,7 @@ import { gettext, ngettext } from "./messages.js";
 export class IdentityActions {
   constructor({ scene, store, history, loader, panes, notices, guard }) {
     Object.assign(this, { scene, store, history, loader, panes, notices, guard });
-    this._dialog = fetched(notices, import.meta.resolve("./identity_dialog.js"));
+    this._dialog = fetchedDialog(notices, import.meta.resolve("./identity_dialog.js"));
     this._asking = false;
   }
 

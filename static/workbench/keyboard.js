@@ -1,3 +1,4 @@
+import { dialogArrives } from "./fetched.js";
 import { chord, keyTable } from "./keys.js";
 
 const FORM = "input, select, textarea, [contenteditable]";
@@ -38,6 +39,7 @@ export class Keyboard {
     const id = this._actions.get(pressed);
     if (!id || (this.controls && belongsToControls(pressed))) return;
     event.preventDefault();
+    if (dialogArrives()) return;
     this._perform(id, event);
   }
 }

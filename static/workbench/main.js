@@ -1,4 +1,5 @@
 import { element } from "./dom.js";
+import { fetchParts } from "./fetched.js";
 import { gettext } from "./messages.js";
 import { openSession } from "./session.js";
 import { started } from "./start.js";
@@ -10,6 +11,8 @@ const root = document.getElementById("workbench");
 try {
   await buildWorkbench(root, await openSession(await started), { mode, home });
   root.dataset.ready = "true";
+  document.addEventListener("keydown", fetchParts, { once: true });
+  document.addEventListener("pointerdown", fetchParts, { once: true });
 } catch (error) {
   console.error(error);
   root.replaceChildren(

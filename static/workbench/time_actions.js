@@ -2,7 +2,7 @@ import { CARRIED, changed } from "./annotation.js";
 import { freePosition, predictPeople } from "./carry.js";
 import * as commands from "./commands.js";
 import { ask } from "./dialogs.js";
-import { fetched } from "./fetched.js";
+import { fetchedDialog } from "./fetched.js";
 import { keyFor } from "./keys.js";
 import { loadMissing } from "./load_missing.js";
 import { gettext, ngettext } from "./messages.js";
@@ -15,7 +15,7 @@ const PATHS = ["none", "selected", "all"];
 export class TimeActions {
   constructor({ scene, store, history, loader, settings, panes, notices, guard, walk, playback }) {
     Object.assign(this, { scene, store, history, loader, settings, panes, notices, guard, walk, playback });
-    this._dialog = fetched(notices, import.meta.resolve("./fill_dialog.js"));
+    this._dialog = fetchedDialog(notices, import.meta.resolve("./fill_dialog.js"));
     this._asked = new Set(); // people in one frame only, shown once
   }
 

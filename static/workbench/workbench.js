@@ -2,7 +2,7 @@ import { Actions } from "./actions.js";
 import { Bar } from "./bar.js";
 import { directionItems } from "./directions.js";
 import { element } from "./dom.js";
-import { fetched } from "./fetched.js";
+import { fetched, fetchedDialog } from "./fetched.js";
 import { Hints } from "./hints.js";
 import { IdentityActions } from "./identity_actions.js";
 import { nameKeys } from "./key_titles.js";
@@ -42,7 +42,7 @@ export async function buildWorkbench(root, session, { mode, home }) {
   panes.addExtra((pane) => directionItems(panes, pane));
   settings.on("change", () => panes.markPeople(true));
   const notices = new Notices();
-  const finishing = fetched(notices, import.meta.resolve("./finish.js"));
+  const finishing = fetchedDialog(notices, import.meta.resolve("./finish.js"));
   const finish = async () => (await finishing())?.finishAssignment({ ...session, walk, notices, home });
   const walk = new Walk({ ...session, notices, finish });
   const actions = new Actions({ ...session, settings, panes, notices, walk });

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Route, expect
 from rcssmin import cssmin
 from rjsmin import jsmin
 
@@ -46,6 +47,11 @@ def test_a_cold_opening_names_every_module_before_it_is_imported(bench: Callable
     assert [name.rsplit("/")[-1] for name in unnamed] == ["main.js"]
 
 
+def slow(route: Route) -> None:
+    time.sleep(0.3)
+    route.continue_()
+
+
 PARTS = [
     ("?", "help", "dialog:modal"),
     (",", "settings_dialog", "dialog:modal"),
@@ -72,11 +78,41 @@ def test_a_part_that_does_not_arrive_says_so_and_comes_at_the_next_try(
     expect(page.locator(shown)).to_be_visible()
 
 
+def test_keys_pressed_while_a_dialog_arrives_change_nothing_behind_it(bench: Callable[..., Bench]) -> None:
+    opened = bench(people=2).open()
+    opened.page.route("**/workbench/settings_dialog*.js", slow)
+    opened.press("Tab", ",", "Backspace", "Backspace")
+    expect(opened.page.locator("dialog:modal")).to_be_visible()
+    opened.press("Escape")
+    assert opened.rows() == ["1", "2"]
+
+
+def test_a_dialog_that_takes_long_does_not_hold_up_the_work(bench: Callable[..., Bench]) -> None:
+    opened = bench(people=2).open()
+    opened.page.route("**/workbench/settings_dialog*.js", lambda route: None)  # never answered
+    opened.press("Tab", ",")
+    opened.page.wait_for_timeout(1200)
+    opened.press("Backspace")
+    assert len(opened.rows()) == 1
+
+
+def test_after_the_first_action_all_parts_come_by_themselves(bench: Callable[..., Bench]) -> None:
+    opened = bench(people=1).open()
+    page = opened.page
+    page.wait_for_load_state("networkidle")
+    opened.press("Tab")
+    page.wait_for_timeout(1000)
+    page.wait_for_load_state("networkidle")
+    page.route("**/*", lambda route: route.abort())
+    opened.press("?")
+    expect(page.locator("dialog:modal")).to_be_visible()
+
+
 def test_a_click_places_although_nothing_tells_how_far_it_can_be_off(bench: Callable[..., Bench]) -> None:
     opened = bench(people=1, marked=False)
     opened.page.route("**/workbench/doubt*.js", lambda route: route.abort())
     opened.open().click_ground(0)
-    assert opened.rows() == ["0"]
+    assert len(opened.rows()) == 1
 
 
 def test_going_one_by_one_works_although_the_corner_pictures_do_not_arrive(
@@ -94,6 +130,7 @@ def test_edits_go_on_and_are_saved_while_a_part_does_not_arrive(bench: Callable[
     opened = bench(people=1).open()
     before = opened.stored()[0].position
     opened.page.route("**/workbench/help*.js", lambda route: route.abort())
-    opened.press("Tab", "ArrowLeft", "?", "ArrowLeft")
+    opened.press("Tab", "ArrowLeft", "?")
     expect(opened.page.locator(".notices")).to_contain_text("Nothing is lost")
+    opened.press("ArrowLeft")
     assert abs(opened.stored()[0].position - before) in {2, 2 * GRID.columns}

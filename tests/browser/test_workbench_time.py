@@ -182,7 +182,9 @@ def test_everybody_can_be_filled_in_at_once(bench: Callable[..., Bench]) -> None
 
 def test_moving_a_keyframe_moves_what_was_filled_in_beside_it(bench: Callable[..., Bench]) -> None:
     opened = mark(bench(people=1), 2).open()
-    opened.press("Tab", "i", "Enter")
+    opened.press("Tab", "i")
+    expect(opened.page.locator("dialog:modal")).to_be_visible()
+    opened.press("Enter")
     expect(frame_cell(opened, 2)).to_have_attribute("data-state", "yellow")
     before = opened.stored(1)[0].position
     opened.press(*["Shift+ArrowRight"] * 4)
