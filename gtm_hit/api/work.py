@@ -15,9 +15,10 @@ from rest_framework.response import Response
 
 from gtm_hit.api import shapes
 from gtm_hit.api.frames import valid
+from gtm_hit.api.serializers import StrictBooleanField
 from gtm_hit.api.staff import ASKS, READS, WRITES, Pages, StaffView, answers, asked, dataset_or_404, invalid
-from gtm_hit.models import ApiToken, Assignment, Batch
-from gtm_hit.ops import batches, overview, tokens, workers
+from gtm_hit.models import ApiToken, Assignment, Batch, Dataset
+from gtm_hit.ops import batches, entry_links, overview, tokens, workers
 
 
 class MakeBatchesSerializer(serializers.Serializer[Any]):
@@ -77,12 +78,19 @@ class LinkQuery(serializers.Serializer[Any]):
 
 
 class LinkSerializer(serializers.Serializer[Any]):
-    link = serializers.URLField(help_text="valid until the server's key changes")
+    link = serializers.URLField(help_text="valid until it is closed or the server's key changes")
+    closed = serializers.BooleanField(help_text="nobody new is let in by it; personal links are never closed")
+
+
+class SwitchSerializer(serializers.Serializer[Any]):
+    closed = StrictBooleanField(help_text="false: makes a new link, if it was closed")
+    platform = serializers.CharField(max_length=workers.MAX_PLATFORM, default="link")
 
 
 class Link(StaffView):
     # A link lets workers in, and that is more than reading.
     read_scope = ApiToken.Scope.WORK
+    write_scope = ApiToken.Scope.WORK
 
     @extend_schema(
         operation_id="link",
@@ -98,8 +106,31 @@ class Link(StaffView):
             external_id = workers.clean_external_id(wanted["worker"]) if "worker" in wanted else None
         except workers.InvalidWorkerId as error:
             raise invalid("", error) from error
-        address = reverse("join", args=[tokens.entry_token(dataset, platform, external_id)])
-        return Response({"link": request.build_absolute_uri(address)})
+        return self.answer(request, dataset, platform, external_id)
+
+    @extend_schema(
+        operation_id="switch_link",
+        summary="Close the link that lets workers in, or make a new one",
+        description="Whoever works already goes on.",
+        request=SwitchSerializer,
+        responses=answers(200, LinkSerializer, WRITES),
+    )
+    def post(self, request: Request, slug: str) -> Response:
+        dataset = dataset_or_404(slug)
+        wanted = valid(SwitchSerializer(data=request.data))
+        try:
+            platform = workers.clean_platform(wanted["platform"])
+        except workers.InvalidWorkerId as error:
+            raise invalid("platform", error) from error
+        (entry_links.close if wanted["closed"] else entry_links.reopen)(dataset, platform)
+        return self.answer(request, dataset, platform)
+
+    def answer(
+        self, request: Request, dataset: Dataset, platform: str, external_id: str | None = None
+    ) -> Response:
+        token = tokens.entry_token(dataset, platform, external_id)
+        link = request.build_absolute_uri(reverse("join", args=[token]))
+        return Response({"link": link, "closed": tokens.read_entry(token).closed})
 
 
 class Progress(StaffView):

@@ -155,3 +155,17 @@ def test_the_link_lets_workers_in(dataset: Dataset, staff: Caller, stranger: Cal
     assert user.get(BASE + "link/").status_code == 403
     assert bearer("read", "import", "release").get(BASE + "link/").status_code == 403
     assert bearer("work").get(BASE + "link/?platform=a%20b").status_code == 400
+
+
+def test_the_link_is_closed_and_made_anew(dataset: Dataset, staff: Caller) -> None:
+    first = staff.get(BASE + "link/").json()
+    assert first["closed"] is False
+    closed = bearer("work").post(BASE + "link/", {"closed": True})
+    assert closed.json()["closed"] is True
+    again = bearer("work").post(BASE + "link/", {"closed": False}).json()
+    assert again["closed"] is False and again["link"] != first["link"]
+
+
+def test_closing_the_link_takes_the_scope_to_work(dataset: Dataset) -> None:
+    reader = bearer("read", "import", "release")
+    assert reader.post(BASE + "link/", {"closed": True}).status_code == 403

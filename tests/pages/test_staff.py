@@ -28,6 +28,7 @@ PAGES = [
 ]
 FORMS = [
     "/datasets/square/batches/",
+    "/datasets/square/batches/link/",
     "/datasets/square/layers/own/export/",
     "/jobs/{job}/cancel/",
     "/jobs/{job}/retry/",
@@ -211,6 +212,20 @@ def test_the_entry_link_on_the_batches_page_works(staff: Client, dataset: Datase
     link = page.split('value="http://testserver')[1].split('"')[0]
     assert link.startswith("/join/")
     assert Client().get(link).status_code == 200
+
+
+def test_the_entry_link_is_closed_and_made_anew_by_buttons(staff: Client, dataset: Dataset) -> None:
+    first = text(staff.get("/datasets/square/batches/")).split('value="http://testserver')[1].split('"')[0]
+    page = text(staff.post("/datasets/square/batches/link/", {"switch": "close"}, follow=True))
+    assert "The link for workers is closed" in page and first not in page
+    assert Client().get(first).status_code == 410
+    page = text(staff.post("/datasets/square/batches/link/", {"switch": "open"}, follow=True))
+    again = page.split('value="http://testserver')[1].split('"')[0]
+    assert again != first and Client().get(again).status_code == 200
+
+
+def test_the_batches_page_says_how_to_make_a_personal_link(staff: Client, dataset: Dataset) -> None:
+    assert "manage.py makelink square --worker ID" in text(staff.get("/datasets/square/batches/"))
 
 
 def test_export_starts_one_job_however_often_it_is_pressed(staff: Client, layer: Layer) -> None:
