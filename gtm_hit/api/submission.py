@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api.frames import REFUSALS, refusal
 from gtm_hit.api.parsing import BoundedJSONParser
 from gtm_hit.api.places import AssignmentPlace
-from gtm_hit.api.serializers import SubmittedSerializer
+from gtm_hit.api.refusals import REFUSALS, refusal
 from gtm_hit.ops import assignments
+
+
+class SubmittedSerializer(serializers.Serializer[Any]):
+    code = serializers.CharField()
+    summary = serializers.DictField()
 
 
 class SubmitView(AssignmentPlace):

@@ -13,12 +13,57 @@ from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api import shapes
-from gtm_hit.api.frames import valid
-from gtm_hit.api.serializers import StrictBooleanField
+from gtm_hit.api.fields import LARGEST, StrictBooleanField
+from gtm_hit.api.refusals import valid
 from gtm_hit.api.staff import ASKS, READS, WRITES, Pages, StaffView, answers, asked, dataset_or_404, invalid
 from gtm_hit.models import ApiToken, Assignment, Batch, Dataset
 from gtm_hit.ops import batches, entry_links, overview, tokens, workers
+
+
+class BatchShape(serializers.ModelSerializer[Batch]):
+    frames = serializers.IntegerField(source="frame_count")
+    first_number = serializers.IntegerField(help_text="frame number")
+    last_number = serializers.IntegerField(help_text="frame number")
+
+    class Meta:
+        model = Batch
+        fields = ["number", "copy", "frames", "first_number", "last_number", "created_at"]
+
+
+class ProgressSerializer(serializers.Serializer[Any]):
+    batches = serializers.IntegerField()
+    free = serializers.IntegerField()
+    leased = serializers.IntegerField()
+    submitted = serializers.IntegerField()
+    accepted = serializers.IntegerField()
+    frames_without = serializers.IntegerField(help_text="frames in no batch")
+
+
+class AssignmentShape(serializers.ModelSerializer[Assignment]):
+    batch = serializers.IntegerField(source="batch.number")
+    copy = serializers.IntegerField(source="batch.copy")
+    worker = serializers.CharField(source="worker.pseudonym", help_text="pseudonym")
+    layer = serializers.CharField(source="layer.name")
+    frames = serializers.IntegerField(source="frame_count")
+    frames_done = serializers.IntegerField()
+    people = serializers.IntegerField()
+
+    class Meta:
+        model = Assignment
+        fields = [
+            *("id", "batch", "copy", "worker", "layer", "state", "frames", "frames_done", "people"),
+            *("leased_at", "expires_at", "submitted_at"),
+        ]
+
+
+class BatchesQuery(serializers.Serializer[Any]):
+    copy = serializers.IntegerField(min_value=1, max_value=LARGEST, required=False)
+
+
+class AssignmentsQuery(serializers.Serializer[Any]):
+    state = serializers.ChoiceField(choices=Assignment.State.choices, required=False)
+    worker = serializers.CharField(max_length=20, required=False, help_text="pseudonym")
+    batch = serializers.IntegerField(min_value=1, max_value=LARGEST, required=False)
 
 
 class MakeBatchesSerializer(serializers.Serializer[Any]):
@@ -34,19 +79,19 @@ class BatchesMadeSerializer(serializers.Serializer[Any]):
 
 class Batches(StaffView, ListAPIView[Batch]):
     queryset = Batch.objects.none()
-    serializer_class = shapes.BatchShape
+    serializer_class = BatchShape
     pagination_class = Pages
     write_scope = ApiToken.Scope.WORK
 
     def get_queryset(self) -> QuerySet[Batch]:
-        wanted = asked(self.request, shapes.BatchesQuery)
+        wanted = asked(self.request, BatchesQuery)
         return overview.batches(dataset_or_404(self.kwargs["slug"])).filter(**wanted)
 
     @extend_schema(
         operation_id="batches",
         summary="Batches of a dataset",
-        parameters=[shapes.BatchesQuery],
-        responses=answers(200, shapes.BatchShape(many=True), ASKS),
+        parameters=[BatchesQuery],
+        responses=answers(200, BatchShape(many=True), ASKS),
     )
     def get(self, request: Request, *args: Any, **kwargs: Any) -> Response:
         return super().get(request, *args, **kwargs)
@@ -137,7 +182,7 @@ class Progress(StaffView):
     @extend_schema(
         operation_id="progress",
         summary="How many batches are free, leased, submitted, accepted",
-        responses=answers(200, shapes.ProgressSerializer, READS),
+        responses=answers(200, ProgressSerializer, READS),
     )
     def get(self, request: Request, slug: str) -> Response:
         return Response(asdict(overview.batch_counts(dataset_or_404(slug))))
@@ -145,11 +190,11 @@ class Progress(StaffView):
 
 class Assignments(StaffView, ListAPIView[Assignment]):
     queryset = Assignment.objects.none()
-    serializer_class = shapes.AssignmentShape
+    serializer_class = AssignmentShape
     pagination_class = Pages
 
     def get_queryset(self) -> QuerySet[Assignment]:
-        wanted = asked(self.request, shapes.AssignmentsQuery)
+        wanted = asked(self.request, AssignmentsQuery)
         names = {"state": "state", "worker": "worker__pseudonym", "batch": "batch__number"}
         narrowed = {names[name]: value for name, value in wanted.items()}
         return overview.assignments(dataset_or_404(self.kwargs["slug"])).filter(**narrowed)
@@ -158,8 +203,8 @@ class Assignments(StaffView, ListAPIView[Assignment]):
         operation_id="assignments",
         summary="Who has which batch, and how far",
         description="Workers appear by their pseudonyms.",
-        parameters=[shapes.AssignmentsQuery],
-        responses=answers(200, shapes.AssignmentShape(many=True), ASKS),
+        parameters=[AssignmentsQuery],
+        responses=answers(200, AssignmentShape(many=True), ASKS),
     )
     def get(self, request: Request, *args: Any, **kwargs: Any) -> Response:
         return super().get(request, *args, **kwargs)
