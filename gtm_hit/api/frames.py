@@ -5,20 +5,19 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from django.db.models import QuerySet
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema, extend_schema_field
 from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
-from rest_framework.views import APIView
 
 from gtm_hit.api import scene
 from gtm_hit.api.fields import LARGEST, StrictBooleanField
-from gtm_hit.api.parsing import BoundedJSONParser
-from gtm_hit.api.places import AssignmentPlace, LayerPlace, Place
+from gtm_hit.api.places import Place, PlacedView
 from gtm_hit.api.refusals import REFUSALS, refusal, valid
 from gtm_hit.api.scene import SceneSerializer
-from gtm_hit.models import Annotation, LayerFrame
+from gtm_hit.models import Annotation, Frame, LayerFrame
 from gtm_hit.ops import assignments
 from gtm_hit.ops.annotations import history, next_person, read_frame, read_frames, save_frame, state_at
 
@@ -103,15 +102,12 @@ class RevisionQuerySerializer(serializers.Serializer[Any]):
     revision = serializers.IntegerField(min_value=0, max_value=LARGEST, required=False)
 
 
-class PlacedView(APIView):
-    parser_classes = [BoundedJSONParser]
-
-    def place(self, **kwargs: Any) -> Place:
-        raise NotImplementedError
-
-
 class SceneView(PlacedView):
-    @extend_schema(summary="Cameras, grid and frames", responses={200: SceneSerializer, **REFUSALS})
+    @extend_schema(
+        summary="Cameras, grid and frames",
+        description="Of a layer of more than 500 frames the part with the first frame that is not done.",
+        responses={200: SceneSerializer, **REFUSALS},
+    )
     def get(self, request: Request, **kwargs: Any) -> Response:
         place = self.place(**kwargs)
         heads = LayerFrame.objects.filter(layer=place.layer, frame__in=place.frames.order_by())
@@ -135,15 +131,32 @@ class SceneView(PlacedView):
         )
 
 
-class FramesView(PlacedView):
+class AssignmentFrames(PlacedView):
+    @extend_schema(
+        operation_id="assignment_frames_list",
+        summary="All frames of the batch",
+        responses={200: FrameStatesSerializer, **REFUSALS},
+    )
     def get(self, request: Request, **kwargs: Any) -> Response:
         place = self.place(**kwargs)
-        frames = place.frames
-        if place.mode == "layer":
-            wanted = valid(FrameRangeSerializer(data=request.query_params))
-            frames = frames.filter(number__gte=wanted["from"])[: wanted["count"]]
-        states = read_frames(place.layer, frames)
-        return Response({"frames": [state.as_dict() for state in states]})
+        return states(place, place.frames)
+
+
+class LayerFrames(PlacedView):
+    @extend_schema(
+        operation_id="layers_frames_list",
+        summary="Some frames of the layer",
+        parameters=[FrameRangeSerializer],
+        responses={200: FrameStatesSerializer, **REFUSALS},
+    )
+    def get(self, request: Request, **kwargs: Any) -> Response:
+        place = self.place(**kwargs)
+        wanted = valid(FrameRangeSerializer(data=request.query_params))
+        return states(place, place.frames.filter(number__gte=wanted["from"])[: wanted["count"]])
+
+
+def states(place: Place, frames: QuerySet[Frame]) -> Response:
+    return Response({"frames": [state.as_dict() for state in read_frames(place.layer, frames)]})
 
 
 class FrameView(PlacedView):
@@ -187,50 +200,3 @@ class HistoryView(PlacedView):
         place = self.place(**kwargs)
         revisions = history(place.layer, place.frame(number))
         return Response({"revisions": [asdict(revision) for revision in revisions]})
-
-
-class AssignmentScene(AssignmentPlace, SceneView):
-    pass
-
-
-class AssignmentFrames(AssignmentPlace, FramesView):
-    @extend_schema(
-        operation_id="assignment_frames_list",
-        summary="All frames of the batch",
-        responses={200: FrameStatesSerializer, **REFUSALS},
-    )
-    def get(self, request: Request, **kwargs: Any) -> Response:
-        return super().get(request, **kwargs)
-
-
-class AssignmentFrame(AssignmentPlace, FrameView):
-    pass
-
-
-class AssignmentHistory(AssignmentPlace, HistoryView):
-    pass
-
-
-class LayerScene(LayerPlace, SceneView):
-    """Of a layer of more than 500 frames the part with the first frame that is not done."""
-
-    in_parts = True
-
-
-class LayerFrames(LayerPlace, FramesView):
-    @extend_schema(
-        operation_id="layers_frames_list",
-        summary="Some frames of the layer",
-        parameters=[FrameRangeSerializer],
-        responses={200: FrameStatesSerializer, **REFUSALS},
-    )
-    def get(self, request: Request, **kwargs: Any) -> Response:
-        return super().get(request, **kwargs)
-
-
-class LayerFrameView(LayerPlace, FrameView):
-    pass
-
-
-class LayerHistory(LayerPlace, HistoryView):
-    pass

@@ -80,21 +80,7 @@ def dataset_part(dataset: Dataset) -> dict[str, Any]:
         },
         "cylinder": {"radius": dataset.cylinder_radius, "height": dataset.cylinder_height},
         "foot_rule": dataset.foot_rule,
-        "cameras": [camera_part(camera) for camera in dataset.cameras.order_by("index")],
-    }
-
-
-def camera_part(camera: Camera) -> dict[str, Any]:
-    calibrated = camera.calibrated
-    return {
-        "index": camera.index,
-        "name": camera.name,
-        "width": camera.width,
-        "height": camera.height,
-        "matrix": calibrated.matrix.tolist(),
-        "rotation": calibrated.rotation.tolist(),
-        "tvec": calibrated.tvec.tolist(),
-        "distortion": calibrated.distortion.tolist(),
+        "cameras": [camera.as_json() for camera in dataset.calibrated_cameras()],
     }
 
 
