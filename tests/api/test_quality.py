@@ -135,6 +135,11 @@ def test_lengths_that_are_none_are_refused(db: None, name: str, value: str) -> N
     assert (response.status_code, response.json()["code"]) == (400, "invalid")
 
 
+def test_a_frame_that_was_not_compared_has_no_marks(layers: tuple[Layer, Layer]) -> None:
+    address = f"{BASE}evaluation/frames/{10**30}/?truth=truth&found=found"
+    assert bearer("read").get(address).status_code == 404
+
+
 def test_long_files_are_for_the_command_line(db: None) -> None:
     assert send(bearer("read"), "0 1 1\n" * 400_000, "").status_code == 400
     assert send(bearer("read"), "0 1 1\n" * 900_000, "").status_code == 413

@@ -23,7 +23,6 @@ PAGES = [
     "/datasets/square/layers/",
     "/exports/",
     "/jobs/{job}/",
-    "/jobs/{job}/state/",
     "/jobs/{job}/download/",
 ]
 FORMS = [
@@ -260,8 +259,10 @@ def test_the_job_page_follows_the_job(staff: Client, job: Job) -> None:
     run.report(40, 100, "writing frames: 4 of 10")
     page = text(staff.get(address))
     assert "running" in page and 'value="40" max="100"' in page and "writing frames: 4 of 10" in page
-    state = staff.get(address + "state/").json()
-    assert (state["state"], state["percent"], state["finished"]) == ("running", 40, False)
+    asked = page.split('data-job="')[1].split('"')[0]
+    state = staff.get(asked).json()
+    assert (state["state"], state["done"], state["total"]) == ("running", 40, 100)
+    assert state["finished_at"] is None
     run.fail("The disk is full.")
     page = text(staff.get(address))
     assert "The disk is full." in page and "Try again" in page and "http-equiv" not in page
