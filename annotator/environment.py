@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ipaddress
 import os
 from urllib.parse import unquote, urlsplit
 
@@ -55,6 +56,14 @@ def starting_with(name: str, default: str, prefixes: tuple[str, ...]) -> str:
 
 def words(name: str, default: str) -> list[str]:
     return [word for word in (os.environ.get(name, "") or default).replace(",", " ").split() if word]
+
+
+def networks(name: str, default: str) -> list[ipaddress.IPv4Network | ipaddress.IPv6Network]:
+    """Addresses and networks, `10.0.0.7 172.16.0.0/12`."""
+    try:
+        return [ipaddress.ip_network(word) for word in words(name, default)]
+    except ValueError as error:
+        raise ImproperlyConfigured(f"{name} must be a list of addresses and networks: {error}") from None
 
 
 def database(name: str, default: str) -> dict[str, object]:

@@ -146,6 +146,13 @@ X_FRAME_OPTIONS = "DENY"
 DATA_UPLOAD_MAX_MEMORY_SIZE = 5 * 1024 * 1024
 
 LEASE_MINUTES = environment.integer("LEASE_MINUTES", 120, minimum=1, maximum=60 * 24 * 30)
+# Until its first save a lease is short, and only so many of them run at once: whoever invents workers holds
+# little, not for long. Whoever saves makes room for others at the same address.
+FIRST_SAVE_MINUTES = environment.integer("FIRST_SAVE_MINUTES", 15, minimum=1, maximum=60 * 24 * 30)
+UNSAVED_PER_ADDRESS = environment.integer("UNSAVED_PER_ADDRESS", 30, minimum=1, maximum=1_000_000)
+UNSAVED_PER_LINK = environment.integer("UNSAVED_PER_LINK", 300, minimum=1, maximum=1_000_000)
+# Whose X-Forwarded-For is believed; from anybody else it is a claim.
+TRUSTED_PROXIES = environment.networks("TRUSTED_PROXIES", "")
 TUTORIAL_DATASET = environment.text("TUTORIAL_DATASET", "demo")
 
 LOG_LEVEL = environment.one_of("LOG_LEVEL", "INFO", ("DEBUG", "INFO", "WARNING", "ERROR"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from typing import Any
 
 from django.contrib import admin
@@ -12,9 +13,11 @@ from gtm_hit.models import (
     Annotation,
     ApiToken,
     Assignment,
+    Attempt,
     Batch,
     Camera,
     Dataset,
+    EntryLink,
     Frame,
     Image,
     Job,
@@ -143,13 +146,39 @@ class WorkerAdmin(admin.ModelAdmin):
     list_display = ["pseudonym", "platform", "external_id", "tutorial_done_at", "created_at"]
     list_filter = ["platform", ("tutorial_done_at", admin.EmptyFieldListFilter)]
     search_fields = ["pseudonym", "external_id"]
-    readonly_fields = ["pseudonym", "platform", "external_id", "created_at"]
+    readonly_fields = ["pseudonym", "platform", "external_id", "bound", "personal_link", "created_at"]
+
+    @admin.display(boolean=True, description="bound to a browser")
+    def bound(self, row: Worker) -> bool:
+        return bool(row.browser)
+
+    @admin.display(description="personal link, for every browser: run")
+    def personal_link(self, row: Worker) -> str:
+        worked_in = Dataset.objects.filter(batches__assignments__worker=row).distinct()
+        slugs = list(worked_in.values_list("slug", flat=True)) or ["DATASET"]
+        words = ["--platform", row.platform, "--worker", row.external_id]
+        return "\n".join(f"manage.py makelink {shlex.join([slug, *words])}" for slug in slugs)
 
     def has_add_permission(self, request: HttpRequest) -> bool:
         return False  # workers come through their link
 
     def has_delete_permission(self, request: HttpRequest, obj: Any = None) -> bool:
         return False
+
+
+@admin.register(EntryLink)
+class EntryLinkAdmin(LookOnlyAdmin):
+    list_display = ["dataset", "platform", "closed_at"]
+    list_filter = ["platform", ("closed_at", admin.EmptyFieldListFilter)]
+    list_select_related = ["dataset"]
+    search_fields = ["dataset__slug", "platform"]
+
+
+@admin.register(Attempt)
+class AttemptAdmin(LookOnlyAdmin):
+    list_display = ["key", "at"]
+    search_fields = ["=key"]
+    date_hierarchy = "at"
 
 
 @admin.register(Batch)

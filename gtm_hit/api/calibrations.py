@@ -10,11 +10,10 @@ from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api import shapes
-from gtm_hit.api.frames import refusal, valid
 from gtm_hit.api.imports import refused
-from gtm_hit.api.jobs import job_or_404, started
+from gtm_hit.api.jobs import JobShape, job_or_404, started
 from gtm_hit.api.parsing import BoundedMultiPartParser
+from gtm_hit.api.refusals import refusal, valid
 from gtm_hit.api.staff import READS, WRITES, Conflict, StaffView, answers, caller, dataset_or_404
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.models import ApiToken, Job
@@ -117,7 +116,7 @@ class Calibrations(StaffView):
         description="Answers with a job of the kind `replace_calibration`. Nothing changes until what it "
         "found is confirmed.",
         request={"multipart/form-data": CalibrationSerializer},
-        responses=answers(202, shapes.JobShape, WRITES),
+        responses=answers(202, JobShape, WRITES),
     )
     def post(self, request: Request, slug: str) -> Response:
         dataset = dataset_or_404(slug)

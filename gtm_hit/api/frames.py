@@ -5,51 +5,109 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from drf_spectacular.utils import OpenApiResponse, extend_schema
+from django.db.models import QuerySet
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import extend_schema, extend_schema_field
+from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
-from rest_framework.serializers import Serializer
-from rest_framework.views import APIView
 
 from gtm_hit.api import scene
-from gtm_hit.api.parsing import BoundedJSONParser
-from gtm_hit.api.places import AssignmentPlace, LayerPlace, Place
-from gtm_hit.api.serializers import (
-    ErrorSerializer,
-    FrameRangeSerializer,
-    FrameStateSerializer,
-    FrameStatesSerializer,
-    HistorySerializer,
-    RevisionQuerySerializer,
-    SaveSerializer,
-    SceneSerializer,
-)
-from gtm_hit.models import LayerFrame
+from gtm_hit.api.fields import LARGEST, StrictBooleanField
+from gtm_hit.api.places import Place, PlacedView
+from gtm_hit.api.refusals import REFUSALS, refusal, valid
+from gtm_hit.api.scene import SceneSerializer
+from gtm_hit.models import Annotation, Frame, LayerFrame
 from gtm_hit.ops import assignments
 from gtm_hit.ops.annotations import history, next_person, read_frame, read_frames, save_frame, state_at
 
 
-def valid(serializer: Serializer[Any]) -> dict[str, Any]:
-    serializer.is_valid(raise_exception=True)
-    return serializer.validated_data
+class PersonSerializer(serializers.Serializer[Any]):
+    person = serializers.IntegerField(min_value=0)
+    position = serializers.IntegerField(min_value=0, help_text="row * columns + column")
+    height = serializers.FloatField(allow_null=True, help_text="metres; null: the dataset's cylinder")
+    radius = serializers.FloatField(allow_null=True, help_text="metres; null: the dataset's cylinder")
 
 
-def refusal(text: str) -> OpenApiResponse:
-    return OpenApiResponse(ErrorSerializer, text)
+class AnnotationSerializer(PersonSerializer):
+    state = serializers.ChoiceField(choices=Annotation.State.choices)
+    origin = serializers.ChoiceField(choices=Annotation.Origin.choices)
 
 
-REFUSALS = {401: refusal("not_signed_in"), 404: refusal("not_found")}
+@extend_schema_field(AnnotationSerializer(many=True))
+class AnnotationsField(serializers.JSONField):
+    """Passed on as sent, so that all problems of a frame are reported together with their places."""
 
 
-class PlacedView(APIView):
-    parser_classes = [BoundedJSONParser]
+@extend_schema_field(OpenApiTypes.DOUBLE)
+class NumberField(serializers.Field[Any, Any, Any, Any]):
+    """Any JSON value: its bounds are checked with the annotations."""
 
-    def place(self, **kwargs: Any) -> Place:
-        raise NotImplementedError
+    def to_internal_value(self, data: Any) -> Any:
+        return data
+
+    def to_representation(self, value: Any) -> Any:
+        return value
+
+
+class SaveSerializer(serializers.Serializer[Any]):
+    save_id = serializers.UUIDField(help_text="chosen by the sender; the same again changes nothing")
+    revision = serializers.IntegerField(
+        min_value=0, max_value=LARGEST, help_text="the revision this edit started from"
+    )
+    annotations = AnnotationsField()
+    done = StrictBooleanField(default=False)
+    nobody = StrictBooleanField(default=False)
+    seconds = NumberField(default=0.0, help_text="active seconds since the save before")
+
+
+class FrameStateSerializer(serializers.Serializer[Any]):
+    number = serializers.IntegerField()
+    revision = serializers.IntegerField()
+    annotations = AnnotationSerializer(many=True)
+    done = serializers.BooleanField()
+    nobody = serializers.BooleanField()
+    saved_at = serializers.DateTimeField(allow_null=True)
+    author = serializers.CharField()
+
+
+class FrameStatesSerializer(serializers.Serializer[Any]):
+    frames = FrameStateSerializer(many=True)
+
+
+class RevisionSerializer(serializers.Serializer[Any]):
+    revision = serializers.IntegerField()
+    created_at = serializers.DateTimeField()
+    author = serializers.CharField()
+    people = serializers.IntegerField()
+    done = serializers.BooleanField()
+
+
+class HistorySerializer(serializers.Serializer[Any]):
+    revisions = RevisionSerializer(many=True)
+
+
+class FrameRangeSerializer(serializers.Serializer[Any]):
+    """Query of a layer's frames."""
+
+    count = serializers.IntegerField(min_value=1, max_value=50, default=50)
+
+    def get_fields(self) -> dict[str, Any]:
+        # `from` cannot be an attribute's name.
+        start = serializers.IntegerField(min_value=0, max_value=LARGEST, default=0, help_text="frame number")
+        return {"from": start, **super().get_fields()}
+
+
+class RevisionQuerySerializer(serializers.Serializer[Any]):
+    revision = serializers.IntegerField(min_value=0, max_value=LARGEST, required=False)
 
 
 class SceneView(PlacedView):
-    @extend_schema(summary="Cameras, grid and frames", responses={200: SceneSerializer, **REFUSALS})
+    @extend_schema(
+        summary="Cameras, grid and frames",
+        description="Of a layer of more than 500 frames the part with the first frame that is not done.",
+        responses={200: SceneSerializer, **REFUSALS},
+    )
     def get(self, request: Request, **kwargs: Any) -> Response:
         place = self.place(**kwargs)
         heads = LayerFrame.objects.filter(layer=place.layer, frame__in=place.frames.order_by())
@@ -73,15 +131,32 @@ class SceneView(PlacedView):
         )
 
 
-class FramesView(PlacedView):
+class AssignmentFrames(PlacedView):
+    @extend_schema(
+        operation_id="assignment_frames_list",
+        summary="All frames of the batch",
+        responses={200: FrameStatesSerializer, **REFUSALS},
+    )
     def get(self, request: Request, **kwargs: Any) -> Response:
         place = self.place(**kwargs)
-        frames = place.frames
-        if place.mode == "layer":
-            wanted = valid(FrameRangeSerializer(data=request.query_params))
-            frames = frames.filter(number__gte=wanted["from"])[: wanted["count"]]
-        states = read_frames(place.layer, frames)
-        return Response({"frames": [state.as_dict() for state in states]})
+        return states(place, place.frames)
+
+
+class LayerFrames(PlacedView):
+    @extend_schema(
+        operation_id="layers_frames_list",
+        summary="Some frames of the layer",
+        parameters=[FrameRangeSerializer],
+        responses={200: FrameStatesSerializer, **REFUSALS},
+    )
+    def get(self, request: Request, **kwargs: Any) -> Response:
+        place = self.place(**kwargs)
+        wanted = valid(FrameRangeSerializer(data=request.query_params))
+        return states(place, place.frames.filter(number__gte=wanted["from"])[: wanted["count"]])
+
+
+def states(place: Place, frames: QuerySet[Frame]) -> Response:
+    return Response({"frames": [state.as_dict() for state in read_frames(place.layer, frames)]})
 
 
 class FrameView(PlacedView):
@@ -125,50 +200,3 @@ class HistoryView(PlacedView):
         place = self.place(**kwargs)
         revisions = history(place.layer, place.frame(number))
         return Response({"revisions": [asdict(revision) for revision in revisions]})
-
-
-class AssignmentScene(AssignmentPlace, SceneView):
-    pass
-
-
-class AssignmentFrames(AssignmentPlace, FramesView):
-    @extend_schema(
-        operation_id="assignment_frames_list",
-        summary="All frames of the batch",
-        responses={200: FrameStatesSerializer, **REFUSALS},
-    )
-    def get(self, request: Request, **kwargs: Any) -> Response:
-        return super().get(request, **kwargs)
-
-
-class AssignmentFrame(AssignmentPlace, FrameView):
-    pass
-
-
-class AssignmentHistory(AssignmentPlace, HistoryView):
-    pass
-
-
-class LayerScene(LayerPlace, SceneView):
-    """Of a layer of more than 500 frames the part with the first frame that is not done."""
-
-    in_parts = True
-
-
-class LayerFrames(LayerPlace, FramesView):
-    @extend_schema(
-        operation_id="layers_frames_list",
-        summary="Some frames of the layer",
-        parameters=[FrameRangeSerializer],
-        responses={200: FrameStatesSerializer, **REFUSALS},
-    )
-    def get(self, request: Request, **kwargs: Any) -> Response:
-        return super().get(request, **kwargs)
-
-
-class LayerFrameView(LayerPlace, FrameView):
-    pass
-
-
-class LayerHistory(LayerPlace, HistoryView):
-    pass

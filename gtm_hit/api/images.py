@@ -24,7 +24,7 @@ from gtm_hit.api.authentication import (
     StaffSession,
     WorkerAuthentication,
 )
-from gtm_hit.api.frames import REFUSALS
+from gtm_hit.api.refusals import REFUSALS
 from gtm_hit.models import Assignment, Image
 from gtm_hit.ops import tokens, tutorial
 

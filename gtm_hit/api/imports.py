@@ -12,11 +12,10 @@ from rest_framework import exceptions, serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api import shapes
-from gtm_hit.api.frames import valid
-from gtm_hit.api.jobs import started
+from gtm_hit.api.fields import LARGEST, StrictBooleanField
+from gtm_hit.api.jobs import JobShape, started
 from gtm_hit.api.parsing import BoundedMultiPartParser
-from gtm_hit.api.serializers import LARGEST, StrictBooleanField
+from gtm_hit.api.refusals import valid
 from gtm_hit.api.staff import READS, WRITES, StaffView, answers, caller, dataset_or_404, invalid
 from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.geometry.cylinder import FootRule
@@ -30,6 +29,15 @@ from gtm_hit.ops.importing.calibrations import UNITS
 from gtm_hit.ops.importing.options import PRESETS, ImportOptions, scene
 
 WHOLE: dict[str, Any] = {"min_value": 1, "max_value": LARGEST, "required": False}
+
+
+class SourceSerializer(serializers.Serializer[Any]):
+    key = serializers.CharField(help_text="what imports are started with")
+    archive = serializers.BooleanField(source="is_archive")
+
+
+class SourcesSerializer(serializers.Serializer[Any]):
+    results = SourceSerializer(many=True)
 
 
 class FiniteField(serializers.FloatField):
@@ -123,10 +131,10 @@ class Sources(StaffView):
     @extend_schema(
         operation_id="sources",
         summary="Folders and archives imports can be started from",
-        responses=answers(200, shapes.SourcesSerializer, READS),
+        responses=answers(200, SourcesSerializer, READS),
     )
     def get(self, request: Request) -> Response:
-        return Response(shapes.SourcesSerializer({"results": uploads.sources()}).data)
+        return Response(SourcesSerializer({"results": uploads.sources()}).data)
 
 
 class ArchiveParser(BoundedMultiPartParser):
@@ -143,7 +151,7 @@ class Uploads(StaffView):
         summary="Send an archive to import from",
         description="Kept until it is imported, for a week at most. Nothing is imported yet.",
         request={"multipart/form-data": UploadSerializer},
-        responses=answers(201, shapes.SourceSerializer, WRITES),
+        responses=answers(201, SourceSerializer, WRITES),
     )
     def post(self, request: Request) -> Response:
         file = valid(UploadSerializer(data=request.data))["file"]
@@ -151,7 +159,7 @@ class Uploads(StaffView):
             kept = annotation_import.keep(file)
         except FormatError as error:
             raise refused("file", error) from error
-        return Response(shapes.SourceSerializer(kept).data, status=201)
+        return Response(SourceSerializer(kept).data, status=201)
 
 
 class Imports(StaffView):
@@ -162,7 +170,7 @@ class Imports(StaffView):
         summary="Import a dataset, or frames it does not have yet",
         description="Answers with the job. A job's `message` lists everything that is not right.",
         request=ImportSerializer,
-        responses=answers(202, shapes.JobShape, WRITES),
+        responses=answers(202, JobShape, WRITES),
         examples=[
             OpenApiExample(
                 "as published",
@@ -186,7 +194,7 @@ class AnnotationImports(StaffView):
         operation_id="import_annotations",
         summary="Import annotations of another program as a new layer",
         request=ImportAnnotationsSerializer,
-        responses=answers(202, shapes.JobShape, WRITES),
+        responses=answers(202, JobShape, WRITES),
         examples=[
             OpenApiExample(
                 "a detector's",

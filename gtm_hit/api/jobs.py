@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from typing import Any
 
 from django.db.models import QuerySet
@@ -9,18 +10,19 @@ from django.http import FileResponse, Http404
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_lazy
 from drf_spectacular.types import OpenApiTypes
-from drf_spectacular.utils import extend_schema
+from drf_spectacular.utils import OpenApiExample, extend_schema, extend_schema_field, extend_schema_serializer
+from rest_framework import serializers
 from rest_framework.exceptions import APIException
 from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api import shapes
-from gtm_hit.api.frames import refusal
+from gtm_hit.api.refusals import refusal
 from gtm_hit.api.staff import ASKS, READS, Conflict, Pages, StaffView, answers, asked, caller
 from gtm_hit.models import ApiToken, Job
 from gtm_hit.ops import export_expiry, exporting, overview
 from gtm_hit.ops import jobs as job_ops
+from gtm_hit.ops.export_expiry import Removed
 
 GONE = {
     export_expiry.Removed.EXPIRED: gettext_lazy("This export has expired; retry the job to make it again."),
@@ -36,6 +38,72 @@ SCOPES = {
 }
 
 
+@extend_schema_serializer(
+    examples=[
+        OpenApiExample(
+            "a finished release",
+            {
+                "id": 41,
+                "dataset": "square",
+                "kind": "make_release",
+                "state": "done",
+                "done": 100,
+                "total": 100,
+                "message": "",
+                "result": {"release": 3, "counts": {"frames": 400, "people": 313}},
+                "attempts": 1,
+                "cancel_requested": False,
+                "created_by": "ada",
+                "created_at": "2026-11-02T10:00:00Z",
+                "started_at": "2026-11-02T10:00:01Z",
+                "finished_at": "2026-11-02T10:00:09Z",
+                "download": None,
+            },
+            response_only=True,
+        )
+    ]
+)
+class JobShape(serializers.ModelSerializer[Job]):
+    dataset = serializers.CharField(source="dataset.slug", default=None, allow_null=True)
+    result = serializers.DictField()
+    created_by = serializers.CharField(source="created_by.username", default=None, allow_null=True)
+    download = serializers.SerializerMethodField()
+    expires_at = serializers.SerializerMethodField()
+    removed = serializers.SerializerMethodField()
+
+    class Meta:
+        model = Job
+        fields = [
+            *("id", "dataset", "kind", "state", "done", "total", "message", "result", "attempts"),
+            *("cancel_requested", "created_by", "created_at", "started_at", "finished_at", "download"),
+            *("expires_at", "removed"),
+        ]
+
+    @extend_schema_field(serializers.CharField(allow_null=True, help_text="address of an export's zip"))
+    def get_download(self, job: Job) -> str | None:
+        return f"/api/v1/jobs/{job.pk}/download/" if exporting.made_files(job) else None
+
+    @extend_schema_field(
+        serializers.DateTimeField(allow_null=True, help_text="when an export's files will be removed")
+    )
+    def get_expires_at(self, job: Job) -> datetime | None:
+        return export_expiry.expires_at(job)
+
+    @extend_schema_field(
+        serializers.ChoiceField(
+            choices=list(Removed), allow_null=True, help_text="why an export's files are gone"
+        )
+    )
+    def get_removed(self, job: Job) -> str | None:
+        return export_expiry.removed(job)
+
+
+class JobsQuery(serializers.Serializer[Any]):
+    dataset = serializers.SlugField(max_length=80, required=False)
+    kind = serializers.ChoiceField(choices=Job.Kind.choices, required=False)
+    state = serializers.ChoiceField(choices=Job.State.choices, required=False)
+
+
 def job_or_404(pk: int) -> Job:
     found = overview.jobs().filter(pk=pk).first()
     if found is None:
@@ -45,16 +113,16 @@ def job_or_404(pk: int) -> Job:
 
 def started(job: Job) -> Response:
     """The answer to whoever asked for long work."""
-    return Response(shapes.JobShape(job_or_404(job.pk)).data, status=202)
+    return Response(JobShape(job_or_404(job.pk)).data, status=202)
 
 
 class Jobs(StaffView, ListAPIView[Job]):
     queryset = Job.objects.none()
-    serializer_class = shapes.JobShape
+    serializer_class = JobShape
     pagination_class = Pages
 
     def get_queryset(self) -> QuerySet[Job]:
-        wanted = asked(self.request, shapes.JobsQuery)
+        wanted = asked(self.request, JobsQuery)
         if "dataset" in wanted:
             wanted["dataset__slug"] = wanted.pop("dataset")
         return overview.jobs().filter(**wanted).order_by("-created_at", "-pk")
@@ -62,17 +130,17 @@ class Jobs(StaffView, ListAPIView[Job]):
     @extend_schema(
         operation_id="jobs",
         summary="Jobs, the newest first",
-        parameters=[shapes.JobsQuery],
-        responses=answers(200, shapes.JobShape(many=True), ASKS),
+        parameters=[JobsQuery],
+        responses=answers(200, JobShape(many=True), ASKS),
     )
     def get(self, request: Request, *args: Any, **kwargs: Any) -> Response:
         return super().get(request, *args, **kwargs)
 
 
 class OneJob(StaffView):
-    @extend_schema(operation_id="job", summary="A job", responses=answers(200, shapes.JobShape, READS))
+    @extend_schema(operation_id="job", summary="A job", responses=answers(200, JobShape, READS))
     def get(self, request: Request, pk: int) -> Response:
-        return Response(shapes.JobShape(job_or_404(pk)).data)
+        return Response(JobShape(job_or_404(pk)).data)
 
 
 class Gone(APIException):
@@ -97,11 +165,11 @@ class CancelJob(JobAction):
         summary="Stop a job",
         description="A waiting job ends at once, a running one at its next step; a finished one stays.",
         request=None,
-        responses=answers(200, shapes.JobShape, READS),
+        responses=answers(200, JobShape, READS),
     )
     def post(self, request: Request, pk: int) -> Response:
         job_ops.cancel(job_or_404(pk))
-        return Response(shapes.JobShape(job_or_404(pk)).data)
+        return Response(JobShape(job_or_404(pk)).data)
 
 
 class RetryJob(JobAction):
@@ -109,7 +177,7 @@ class RetryJob(JobAction):
         operation_id="retry_job",
         summary="Do the same again, as a new job",
         request=None,
-        responses=answers(202, shapes.JobShape, {**READS, 409: refusal("under_way")}),
+        responses=answers(202, JobShape, {**READS, 409: refusal("under_way")}),
     )
     def post(self, request: Request, pk: int) -> Response:
         job = job_or_404(pk)
@@ -124,12 +192,12 @@ class DeleteFiles(JobAction):
         summary="Remove the files of a finished export",
         description="The job stays and can be done again. Releases cannot be removed.",
         request=None,
-        responses=answers(200, shapes.JobShape, {**READS, 409: refusal("no_files")}),
+        responses=answers(200, JobShape, {**READS, 409: refusal("no_files")}),
     )
     def post(self, request: Request, pk: int) -> Response:
         if not export_expiry.delete(job_or_404(pk)):
             raise NoFiles(_("This job has no files to delete."))
-        return Response(shapes.JobShape(job_or_404(pk)).data)
+        return Response(JobShape(job_or_404(pk)).data)
 
 
 class Download(StaffView):

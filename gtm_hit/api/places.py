@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
 from django.contrib.auth.models import User
 from django.db.models import QuerySet
 from django.http import Http404
+from rest_framework.authentication import BaseAuthentication
+from rest_framework.request import Request
 from rest_framework.views import APIView
 
 from gtm_hit.api.authentication import (
@@ -19,6 +22,7 @@ from gtm_hit.api.authentication import (
     StaffSession,
     WorkerAuthentication,
 )
+from gtm_hit.api.parsing import BoundedJSONParser
 from gtm_hit.models import ApiToken, Assignment, Dataset, Frame, Layer, Worker
 from gtm_hit.ops import assignments, parts, tokens
 from gtm_hit.ops.annotations import Author
@@ -42,54 +46,68 @@ class Place:
         return frame
 
 
-class AssignmentPlace(APIView):
-    authentication_classes = [AssignmentAuthentication]
-    permission_classes = [HoldsAssignment]
-
-    @property
-    def assignment(self) -> Assignment:
-        return cast(Assignment, self.request.auth)
-
-    def place(self, **kwargs: Any) -> Place:
-        assignment = self.assignment
-        return Place(
-            mode="assignment",
-            dataset=assignment.batch.dataset,
-            layer=assignment.layer,
-            frames=Frame.objects.filter(batches=assignment.batch_id).order_by("number"),
-            author=assignment.worker,
-            read_only_reason=assignments.read_only_reason(assignment),
-            assignment=assignment,
-        )
+def assignment_place(request: Request, **_kwargs: Any) -> Place:
+    assignment = cast(Assignment, request.auth)
+    return Place(
+        mode="assignment",
+        dataset=assignment.batch.dataset,
+        layer=assignment.layer,
+        frames=Frame.objects.filter(batches=assignment.batch_id).order_by("number"),
+        author=assignment.worker,
+        read_only_reason=assignments.read_only_reason(assignment),
+        assignment=assignment,
+    )
 
 
-class LayerPlace(APIView):
-    authentication_classes = [BearerAuthentication, StaffSession]
-    permission_classes = [StaffMay]
+def layer_place(request: Request, **kwargs: Any) -> Place:
+    """The layer with the number in the address, or the part of it that begins at `first`."""
+    return found_layer(request, kwargs["layer"], "first" in kwargs, kwargs.get("first"))
+
+
+def layer_start_place(request: Request, **kwargs: Any) -> Place:
+    """The same, and of a layer that is too long the part with the first frame that is not done."""
+    return found_layer(request, kwargs["layer"], True, kwargs.get("first"))
+
+
+def found_layer(request: Request, pk: int, in_parts: bool, first: int | None) -> Place:
+    found = Layer.objects.select_related("dataset").filter(pk=pk).first()
+    if found is None:
+        raise Http404
+    assignment = Assignment.objects.select_related("batch__dataset").filter(layer=found).first()
+    scope: dict[str, Any] = {"batches": assignment.batch_id} if assignment else {"dataset": found.dataset_id}
+    part = parts.part_of(found, first) if in_parts else None
+    if part:
+        scope["number__range"] = (part.first, part.last)
+    return Place(
+        mode="layer",
+        dataset=found.dataset,
+        layer=found,
+        frames=Frame.objects.filter(**scope).order_by("number"),
+        author=cast(User, request.user),
+        read_only_reason="not_author" if found.kind == Layer.Kind.ASSIGNMENT else "",
+        assignment=assignment,
+        part=part,
+    )
+
+
+# In a worker's assignment; with `as_view(**IN_LAYER)` in any layer, for staff. As a docstring this would be
+# published with the schema.
+class PlacedView(APIView):
+    authentication_classes: Sequence[type[BaseAuthentication]] = [AssignmentAuthentication]
+    permission_classes: Sequence[Any] = [HoldsAssignment]
+    parser_classes = [BoundedJSONParser]
     write_scope = ApiToken.Scope.WORK
-    in_parts = False  # also under the address of the whole layer
+    find: Callable[..., Place] = staticmethod(assignment_place)
 
     def place(self, **kwargs: Any) -> Place:
-        found = Layer.objects.select_related("dataset").filter(pk=kwargs["layer"]).first()
-        if found is None:
-            raise Http404
-        assignment = Assignment.objects.select_related("batch__dataset").filter(layer=found).first()
-        scope: dict[str, Any] = (
-            {"batches": assignment.batch_id} if assignment else {"dataset": found.dataset_id}
-        )
-        part = parts.part_of(found, kwargs.get("first")) if self.in_parts or "first" in kwargs else None
-        if part:
-            scope["number__range"] = (part.first, part.last)
-        return Place(
-            mode="layer",
-            dataset=found.dataset,
-            layer=found,
-            frames=Frame.objects.filter(**scope).order_by("number"),
-            author=cast(User, self.request.user),
-            read_only_reason="not_author" if found.kind == Layer.Kind.ASSIGNMENT else "",
-            assignment=assignment,
-            part=part,
-        )
+        return self.find(self.request, **kwargs)
+
+
+IN_LAYER: dict[str, Any] = {
+    "authentication_classes": [BearerAuthentication, StaffSession],
+    "permission_classes": [StaffMay],
+    "find": layer_place,
+}
 
 
 class TutorialPlace(APIView):

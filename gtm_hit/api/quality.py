@@ -13,10 +13,10 @@ from rest_framework.generics import GenericAPIView
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api import shapes
-from gtm_hit.api.frames import valid
+from gtm_hit.api.fields import LARGEST
 from gtm_hit.api.imports import FiniteField, refused
 from gtm_hit.api.parsing import BoundedMultiPartParser
+from gtm_hit.api.refusals import valid
 from gtm_hit.api.staff import (
     ASKS,
     WRITES,
@@ -33,6 +33,7 @@ from gtm_hit.metrics.annotations import MetricsError
 from gtm_hit.metrics.matching import RADIUS
 from gtm_hit.models import ApiToken
 from gtm_hit.ops.quality import agreement, comparing, text_files
+from gtm_hit.ops.quality.comparing import LARGEST_RADIUS, Scope
 from gtm_hit.ops.quality.layer_rows import QualityError
 
 EVALUATION = OpenApiExample(
@@ -51,9 +52,27 @@ EVALUATION = OpenApiExample(
 )
 
 
+class EvaluationQuery(serializers.Serializer[Any]):
+    truth = serializers.CharField(max_length=120, help_text="name of a layer")
+    found = serializers.CharField(max_length=120, help_text="name of a layer")
+    radius = serializers.FloatField(
+        min_value=0.001, max_value=LARGEST_RADIUS, default=RADIUS, help_text="metres"
+    )
+    scope = serializers.ChoiceField(choices=[each.value for each in Scope], default=Scope.BOTH.value)
+    start = serializers.IntegerField(
+        min_value=0, max_value=LARGEST, default=0, help_text="frame number from which on to compare"
+    )
+
+
+class AgreementQuery(serializers.Serializer[Any]):
+    radius = serializers.FloatField(
+        min_value=0.001, max_value=LARGEST_RADIUS, default=RADIUS, help_text="metres"
+    )
+
+
 def compared(request: Request, slug: str) -> comparing.Comparison:
     dataset = dataset_or_404(slug)
-    wanted = asked(request, shapes.EvaluationQuery)
+    wanted = asked(request, EvaluationQuery)
     truth, found = (layer_named(dataset, wanted[side], side) for side in ("truth", "found"))
     scope = comparing.Scope(wanted["scope"])
     try:
@@ -69,7 +88,7 @@ class Evaluation(StaffView):
         operation_id="evaluation",
         summary="One layer measured by another",
         description=f"{comparing.MOST_FRAMES} frames from `start` on. Scores as fractions; undefined: null.",
-        parameters=[shapes.EvaluationQuery],
+        parameters=[EvaluationQuery],
         responses=answers(200, OpenApiResponse(OpenApiTypes.OBJECT, examples=[EVALUATION]), ASKS),
     )
     def get(self, request: Request, slug: str) -> Response:
@@ -107,7 +126,7 @@ class EvaluationFrames(ListView):
     @extend_schema(
         operation_id="evaluation_frames",
         summary="Frames of an evaluation, the worst first",
-        parameters=[shapes.EvaluationQuery],
+        parameters=[EvaluationQuery],
         responses=answers(200, FrameScoresSerializer(many=True), ASKS),
     )
     def get(self, request: Request, slug: str) -> Response:
@@ -140,7 +159,7 @@ class EvaluationFrame(StaffView):
     @extend_schema(
         operation_id="evaluation_frame",
         summary="Who is matched, missed, extra or swapped in a frame",
-        parameters=[shapes.EvaluationQuery],
+        parameters=[EvaluationQuery],
         responses=answers(200, MarksSerializer, ASKS),
     )
     def get(self, request: Request, slug: str, number: int) -> Response:
@@ -229,12 +248,12 @@ class Agreement(ListView):
     @extend_schema(
         operation_id="agreement",
         summary="How far workers who did the same batch agree",
-        parameters=[shapes.AgreementQuery],
+        parameters=[AgreementQuery],
         responses=answers(200, BatchAgreementSerializer(many=True), ASKS),
     )
     def get(self, request: Request, slug: str) -> Response:
         dataset = dataset_or_404(slug)
-        radius = asked(request, shapes.AgreementQuery)["radius"]
+        radius = asked(request, AgreementQuery)["radius"]
         numbers = self.page(agreement.shared_batches(dataset))
         found = agreement.batch_agreements(dataset, numbers, radius)
         return self.get_paginated_response([agreement.as_numbers(each) for each in found])

@@ -13,9 +13,8 @@ from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api import shapes
-from gtm_hit.api.frames import valid
-from gtm_hit.api.jobs import Download, started
+from gtm_hit.api.jobs import Download, JobShape, started
+from gtm_hit.api.refusals import valid
 from gtm_hit.api.staff import (
     READS,
     WRITES,
@@ -31,6 +30,16 @@ from gtm_hit.api.staff import (
 from gtm_hit.models import ApiToken, Release
 from gtm_hit.ops import exporting, releases
 from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, FORMATS
+
+
+class ReleaseShape(serializers.ModelSerializer[Release]):
+    layer = serializers.CharField(source="layer.name")
+    counts = serializers.DictField(child=serializers.IntegerField())
+    created_by = serializers.CharField(source="created_by.username", default=None, allow_null=True)
+
+    class Meta:
+        model = Release
+        fields = ["number", "title", "layer", "counts", "manifest_digest", "created_by", "created_at"]
 
 
 def formats_field(usual: tuple[str, ...]) -> serializers.ListField:
@@ -58,7 +67,7 @@ class Exports(StaffView):
         summary="Export a layer",
         description="Answers with the job; when it is done, its `download` is the zip's address.",
         request=ExportSerializer,
-        responses=answers(202, shapes.JobShape, WRITES),
+        responses=answers(202, JobShape, WRITES),
         examples=[OpenApiExample("two formats", {"formats": ["wildtrack", "coco"]}, request_only=True)],
     )
     def post(self, request: Request, slug: str, name: str) -> Response:
@@ -69,7 +78,7 @@ class Exports(StaffView):
 
 class Releases(StaffView, ListAPIView[Release]):
     queryset = Release.objects.none()
-    serializer_class = shapes.ReleaseShape
+    serializer_class = ReleaseShape
     pagination_class = Pages
     write_scope = ApiToken.Scope.RELEASE
 
@@ -79,7 +88,7 @@ class Releases(StaffView, ListAPIView[Release]):
     @extend_schema(
         operation_id="releases",
         summary="Releases of a dataset, the newest first",
-        responses=answers(200, shapes.ReleaseShape(many=True), READS),
+        responses=answers(200, ReleaseShape(many=True), READS),
     )
     def get(self, request: Request, *args: Any, **kwargs: Any) -> Response:
         return super().get(request, *args, **kwargs)
@@ -89,7 +98,7 @@ class Releases(StaffView, ListAPIView[Release]):
         summary="Release a layer under the next number",
         description="Answers with the job; its `result.release` is the number when it is done.",
         request=MakeReleaseSerializer,
-        responses=answers(202, shapes.JobShape, WRITES),
+        responses=answers(202, JobShape, WRITES),
         examples=[
             OpenApiExample(
                 "the truth", {"layer": "truth", "licence": "CC BY 4.0", "title": "First"}, request_only=True
@@ -113,10 +122,10 @@ class OneRelease(StaffView):
     @extend_schema(
         operation_id="release",
         summary="A release",
-        responses=answers(200, shapes.ReleaseShape, READS),
+        responses=answers(200, ReleaseShape, READS),
     )
     def get(self, request: Request, slug: str, number: int) -> Response:
-        return Response(shapes.ReleaseShape(release_or_404(slug, number)).data)
+        return Response(ReleaseShape(release_or_404(slug, number)).data)
 
 
 class DownloadRelease(Download):

@@ -6,8 +6,60 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
+from rest_framework import serializers
+
 from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, LayerFrame
 from gtm_hit.ops.neighbours import Neighbours, neighbours
+
+
+class ImageRefSerializer(serializers.Serializer[Any]):
+    camera = serializers.IntegerField()
+    light = serializers.CharField(help_text="fills a pane")
+    full = serializers.CharField(help_text="every pixel")
+
+
+class SceneFrameSerializer(serializers.Serializer[Any]):
+    number = serializers.IntegerField()
+    images = ImageRefSerializer(many=True)
+    revision = serializers.IntegerField()
+    done = serializers.BooleanField()
+    nobody = serializers.BooleanField()
+
+
+class CameraShape(serializers.ModelSerializer[Camera]):
+    matrix = serializers.ListField(child=serializers.ListField(child=serializers.FloatField()))
+    rvec = serializers.ListField(child=serializers.FloatField(), help_text="radians")
+    tvec = serializers.ListField(child=serializers.FloatField(), help_text="metres")
+    distortion = serializers.ListField(child=serializers.FloatField(), help_text="OpenCV's order")
+
+    class Meta:
+        model = Camera
+        fields = ["index", "name", "width", "height", "matrix", "rvec", "tvec", "distortion"]
+
+
+class SceneCameraSerializer(CameraShape):
+    rotation = serializers.ListField(child=serializers.ListField(child=serializers.FloatField()))
+
+    class Meta(CameraShape.Meta):
+        fields = [*CameraShape.Meta.fields, "rotation"]
+
+
+class SceneSerializer(serializers.Serializer[Any]):
+    mode = serializers.CharField(help_text="assignment, layer or tutorial")
+    dataset = serializers.DictField()
+    grid = serializers.DictField()
+    cylinder = serializers.DictField()
+    foot_rule = serializers.CharField()
+    cameras = SceneCameraSerializer(many=True)
+    frames = SceneFrameSerializer(many=True)
+    layer = serializers.DictField()
+    editable = serializers.BooleanField()
+    read_only_reason = serializers.CharField()
+    assignment = serializers.DictField(allow_null=True)
+    next_person = serializers.IntegerField(help_text="no save of the layer has used it")
+    neighbours = serializers.DictField(
+        required=False, help_text="before, after: frames of accepted work beside the batch, nearest first"
+    )
 
 
 def dataset_part(dataset: Dataset) -> dict[str, Any]:
@@ -28,21 +80,7 @@ def dataset_part(dataset: Dataset) -> dict[str, Any]:
         },
         "cylinder": {"radius": dataset.cylinder_radius, "height": dataset.cylinder_height},
         "foot_rule": dataset.foot_rule,
-        "cameras": [camera_part(camera) for camera in dataset.cameras.order_by("index")],
-    }
-
-
-def camera_part(camera: Camera) -> dict[str, Any]:
-    calibrated = camera.calibrated
-    return {
-        "index": camera.index,
-        "name": camera.name,
-        "width": camera.width,
-        "height": camera.height,
-        "matrix": calibrated.matrix.tolist(),
-        "rotation": calibrated.rotation.tolist(),
-        "tvec": calibrated.tvec.tolist(),
-        "distortion": calibrated.distortion.tolist(),
+        "cameras": [camera.as_json() for camera in dataset.calibrated_cameras()],
     }
 
 

@@ -14,8 +14,8 @@ from rest_framework.serializers import Serializer
 from rest_framework.views import APIView
 
 from gtm_hit.api.authentication import BearerAuthentication, StaffMay, StaffSession
-from gtm_hit.api.frames import refusal, valid
 from gtm_hit.api.parsing import BoundedJSONParser
+from gtm_hit.api.refusals import refusal, valid
 from gtm_hit.models import ApiToken, Dataset, Layer
 
 READS = {401: refusal("not_signed_in"), 403: refusal("forbidden"), 404: refusal("not_found")}

@@ -7,15 +7,15 @@ from typing import Any
 from django.http import Http404, HttpResponse
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiExample, OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api import shapes
 from gtm_hit.api.jobs import Download
 from gtm_hit.api.staff import ASKS, StaffView, answers, asked, layer_or_404
 from gtm_hit.metrics.coverage import Coverage
 from gtm_hit.models import Layer
-from gtm_hit.ops.quality.statistics import LayerStatistics, ground_coverage, layer_statistics
+from gtm_hit.ops.quality.statistics import EVERY, LayerStatistics, ground_coverage, layer_statistics
 from gtm_hit.ops.quality.statistics_figures import FIGURES
 from gtm_hit.ops.quality.statistics_files import PICTURES, numbers_csv
 from gtm_hit.ops.quality.statistics_numbers import as_numbers
@@ -42,9 +42,18 @@ EXAMPLE = OpenApiExample(
 )
 
 
+MOST_EVERY = 10_000
+
+
+class CoverageQuery(serializers.Serializer[Any]):
+    every = serializers.IntegerField(
+        min_value=1, max_value=MOST_EVERY, default=EVERY, help_text="coverage: every n-th position"
+    )
+
+
 def measured(request: Request, slug: str, name: str) -> tuple[Layer, LayerStatistics, Coverage]:
     layer = layer_or_404(slug, name)
-    every = asked(request, shapes.CoverageQuery)["every"]
+    every = asked(request, CoverageQuery)["every"]
     if not layer.dataset.cameras.exists():
         raise Http404
     return layer, layer_statistics(layer), ground_coverage(layer.dataset, every)
@@ -55,7 +64,7 @@ class Statistics(StaffView):
         operation_id="statistics",
         summary="What a paper prints of a layer",
         description="Metres and seconds; what is not defined is null.",
-        parameters=[shapes.CoverageQuery],
+        parameters=[CoverageQuery],
         responses=answers(200, OpenApiResponse(OpenApiTypes.OBJECT, examples=[EXAMPLE]), ASKS),
     )
     def get(self, request: Request, slug: str, name: str) -> Response:
@@ -68,7 +77,7 @@ class StatisticsTable(Download):
         operation_id="statistics_table",
         summary="All numbers behind the statistics and their figures, as CSV",
         description="Columns: quantity, of what, value, unit.",
-        parameters=[shapes.CoverageQuery],
+        parameters=[CoverageQuery],
         responses={(200, "text/csv"): OpenApiTypes.STR, **ASKS},
     )
     def get(self, request: Request, slug: str, name: str) -> HttpResponse:
@@ -83,7 +92,7 @@ class StatisticsFigure(Download):
         parameters=[
             OpenApiParameter("figure", str, OpenApiParameter.PATH, enum=list(FIGURES)),
             OpenApiParameter("kind", str, OpenApiParameter.PATH, enum=list(PICTURES)),
-            shapes.CoverageQuery,
+            CoverageQuery,
         ],
         responses={
             (200, "image/svg+xml"): OpenApiTypes.STR,

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from typing import Any, cast
+
 from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api.frames import REFUSALS, refusal
-from gtm_hit.api.parsing import BoundedJSONParser
-from gtm_hit.api.places import AssignmentPlace
-from gtm_hit.api.serializers import SubmittedSerializer
+from gtm_hit.api.places import PlacedView
+from gtm_hit.api.refusals import REFUSALS, refusal
+from gtm_hit.models import Assignment
 from gtm_hit.ops import assignments
 
 
-class SubmitView(AssignmentPlace):
-    parser_classes = [BoundedJSONParser]
+class SubmittedSerializer(serializers.Serializer[Any]):
+    code = serializers.CharField()
+    summary = serializers.DictField()
 
+
+class SubmitView(PlacedView):
     @extend_schema(
         summary="Submit the batch",
         description="Only when every frame is done on the server's record. Again: the same code.",
@@ -28,5 +33,5 @@ class SubmitView(AssignmentPlace):
         },
     )
     def post(self, request: Request) -> Response:
-        submitted = assignments.submit(self.assignment)
+        submitted = assignments.submit(cast(Assignment, request.auth))
         return Response({"code": submitted.code, "summary": assignments.summary(submitted)})

@@ -2,24 +2,44 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from django.http import Http404
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
 from gtm_hit.api import scene
-from gtm_hit.api.frames import REFUSALS, refusal, valid
+from gtm_hit.api.fields import LARGEST
+from gtm_hit.api.frames import AnnotationsField, FrameStateSerializer, FrameStatesSerializer
 from gtm_hit.api.parsing import BoundedJSONParser
 from gtm_hit.api.places import TutorialPlace
-from gtm_hit.api.serializers import (
-    CheckSerializer,
-    FrameStateSerializer,
-    FrameStatesSerializer,
-    SceneSerializer,
-    TutorialDoneSerializer,
-    VerdictSerializer,
-)
+from gtm_hit.api.refusals import REFUSALS, refusal, valid
+from gtm_hit.api.scene import SceneSerializer
 from gtm_hit.ops import tutorial
+from gtm_hit.ops.tutorial import Step
+
+
+class CheckSerializer(serializers.Serializer[Any]):
+    step = serializers.CharField(help_text=", ".join(step.value for step in Step))
+    frame = serializers.IntegerField(min_value=0, max_value=LARGEST)
+    annotations = AnnotationsField()
+
+    def validate_step(self, value: str) -> Step:
+        if value not in set(Step):
+            raise serializers.ValidationError(_("Must be one of %(choices)s.") % {"choices": ", ".join(Step)})
+        return Step(value)
+
+
+class VerdictSerializer(serializers.Serializer[Any]):
+    ok = serializers.BooleanField()
+    message = serializers.CharField()
+
+
+class TutorialDoneSerializer(serializers.Serializer[Any]):
+    done_at = serializers.DateTimeField()
 
 
 class TutorialScene(TutorialPlace):

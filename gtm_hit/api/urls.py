@@ -23,6 +23,7 @@ from gtm_hit.api import (
 from gtm_hit.api.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.images import ImageView
 from gtm_hit.api.missing import MissingView
+from gtm_hit.api.places import IN_LAYER, layer_start_place
 from gtm_hit.api.submission import SubmitView
 
 staff: dict[str, Any] = {
@@ -30,24 +31,25 @@ staff: dict[str, Any] = {
     "permission_classes": [StaffMay],
 }
 assignment = [
-    path("scene/", frames.AssignmentScene.as_view()),
+    path("scene/", frames.SceneView.as_view()),
     path("frames/", frames.AssignmentFrames.as_view()),
-    path("frames/<int:number>/", frames.AssignmentFrame.as_view()),
-    path("frames/<int:number>/history/", frames.AssignmentHistory.as_view()),
+    path("frames/<int:number>/", frames.FrameView.as_view()),
+    path("frames/<int:number>/history/", frames.HistoryView.as_view()),
     path("submit/", SubmitView.as_view()),
 ]
+START: dict[str, Any] = {**IN_LAYER, "find": layer_start_place}
 layer = [
-    path("scene/", frames.LayerScene.as_view()),
-    path("frames/", frames.LayerFrames.as_view()),
-    path("frames/<int:number>/", frames.LayerFrameView.as_view()),
-    path("frames/<int:number>/history/", frames.LayerHistory.as_view()),
+    path("scene/", frames.SceneView.as_view(**START)),
+    path("frames/", frames.LayerFrames.as_view(**IN_LAYER)),
+    path("frames/<int:number>/", frames.FrameView.as_view(**IN_LAYER)),
+    path("frames/<int:number>/history/", frames.HistoryView.as_view(**IN_LAYER)),
 ]
 # The same for a part of a long layer: the workbench opens no more of it.
 one_part = [
-    path("scene/", frames.LayerScene.as_view(schema=None)),
-    path("frames/", frames.LayerFrames.as_view(schema=None)),
-    path("frames/<int:number>/", frames.LayerFrameView.as_view(schema=None)),
-    path("frames/<int:number>/history/", frames.LayerHistory.as_view(schema=None)),
+    path("scene/", frames.SceneView.as_view(**START, schema=None)),
+    path("frames/", frames.LayerFrames.as_view(**IN_LAYER, schema=None)),
+    path("frames/<int:number>/", frames.FrameView.as_view(**IN_LAYER, schema=None)),
+    path("frames/<int:number>/history/", frames.HistoryView.as_view(**IN_LAYER, schema=None)),
 ]
 learning = [
     path("scene/", tutorial.TutorialScene.as_view()),

@@ -11,11 +11,10 @@ from rest_framework import exceptions, serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api import shapes
-from gtm_hit.api.frames import valid
+from gtm_hit.api.fields import StrictBooleanField
 from gtm_hit.api.imports import FiniteField, SceneSerializer, refuse_impossible, source_named
-from gtm_hit.api.jobs import started
-from gtm_hit.api.serializers import StrictBooleanField
+from gtm_hit.api.jobs import JobShape, started
+from gtm_hit.api.refusals import valid
 from gtm_hit.api.staff import WRITES, StaffView, answers, caller, invalid
 from gtm_hit.models import ApiToken
 from gtm_hit.ops import import_jobs, uploads
@@ -46,7 +45,7 @@ class VideoImports(StaffView):
         description="The source is a folder that holds the videos and their calibrations. "
         "The same again continues where an earlier job was stopped.",
         request=ImportVideosSerializer,
-        responses=answers(202, shapes.JobShape, WRITES),
+        responses=answers(202, JobShape, WRITES),
         examples=[
             OpenApiExample(
                 "two cameras",

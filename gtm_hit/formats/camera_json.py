@@ -31,6 +31,7 @@ from gtm_hit.formats.problems import FormatError, Problem, ProblemList, shown
 from gtm_hit.geometry.camera import CalibrationError, Camera
 
 FORMAT, VERSION = "gtm-cameras", 1
+FACTS = ("name", "width", "height", "matrix", "rvec", "tvec", "distortion")
 MOST_BYTES = 10_000_000
 NO_LENS = [0.0] * 5
 
@@ -75,15 +76,8 @@ def save_cameras(path: Path, cameras: Sequence[Camera]) -> None:
 
 def camera_facts(camera: Camera) -> dict[str, Any]:
     """One entry of the file; with an index, the arguments of `Camera` again."""
-    return {
-        "name": camera.name,
-        "width": camera.width,
-        "height": camera.height,
-        "matrix": camera.matrix.tolist(),
-        "rvec": camera.rvec.tolist(),
-        "tvec": camera.tvec.tolist(),
-        "distortion": camera.distortion.tolist(),
-    }
+    facts = camera.as_json()
+    return {name: facts[name] for name in FACTS}
 
 
 def _entries(path: Path) -> list[Any]:

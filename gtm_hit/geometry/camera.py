@@ -101,13 +101,14 @@ class Camera:
         return -1 if (down if abs(down) > STEEP else away) > 0 else 1
 
     def as_json(self) -> dict[str, Any]:
-        """What the browser's `Camera` is made from."""
+        """All its numbers, to the last bit; the browser's `Camera` is made from them."""
         return {
             "index": self.index,
             "name": self.name,
             "width": self.width,
             "height": self.height,
             "matrix": self.matrix.tolist(),
+            "rvec": self.rvec.tolist(),
             "rotation": self.rotation.tolist(),
             "tvec": self.tvec.tolist(),
             "distortion": self.distortion.tolist(),

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from gtm_hit.models.access import Attempt, EntryLink
 from gtm_hit.models.annotation import Annotation, AppendOnlyError, Layer, LayerFrame, Save
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
@@ -12,9 +13,11 @@ __all__ = [
     "ApiToken",
     "AppendOnlyError",
     "Assignment",
+    "Attempt",
     "Batch",
     "Camera",
     "Dataset",
+    "EntryLink",
     "Frame",
     "Image",
     "Job",

@@ -34,6 +34,9 @@ class Worker(models.Model):
     pseudonym = models.CharField(max_length=20, unique=True, default=pseudonym, editable=False)
     tutorial_steps = models.JSONField(default=list, blank=True, help_text="steps of the tutorial done right")
     tutorial_done_at = models.DateTimeField(null=True, blank=True)
+    browser = models.CharField(
+        max_length=64, blank=True, editable=False, help_text="digest of the secret of the browser he began in"
+    )
     created_at = models.DateTimeField(auto_now_add=True)
 
     class Meta:
@@ -91,9 +94,14 @@ class Assignment(models.Model):
     expires_at = models.DateTimeField()
     submitted_at = models.DateTimeField(null=True, blank=True)
     code = models.CharField(max_length=20, unique=True, null=True, blank=True, editable=False)
+    takes = models.PositiveIntegerField(default=1, editable=False, help_text="how often taken before a save")
+    address = models.CharField(
+        max_length=64, blank=True, editable=False, help_text="digest of the address it was taken from"
+    )
 
     class Meta:
         ordering = ["-leased_at"]
+        indexes = [models.Index(fields=["address", "leased_at"])]
         constraints = [
             models.UniqueConstraint(
                 fields=["batch"],

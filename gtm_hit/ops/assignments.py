@@ -11,12 +11,13 @@ from typing import Any
 
 from django.conf import settings
 from django.db import IntegrityError, transaction
-from django.db.models import Count, Exists, OuterRef, Q, QuerySet, Sum
+from django.db.models import Count, Exists, F, OuterRef, Q, QuerySet, Sum
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
-from gtm_hit.models import Assignment, Batch, Dataset, Frame, Layer, Worker
+from gtm_hit.models import Assignment, Batch, Dataset, Frame, Layer, LayerFrame, Worker
 from gtm_hit.models.work import completion_code
+from gtm_hit.ops import unsaved_leases
 
 State = Assignment.State
 
@@ -60,6 +61,11 @@ def lease_end(now: datetime | None = None) -> datetime:
     return (now or timezone.now()) + timedelta(minutes=settings.LEASE_MINUTES)
 
 
+def first_lease_end() -> datetime:
+    """Until something is saved; then `extend` gives the whole time."""
+    return timezone.now() + timedelta(minutes=min(settings.FIRST_SAVE_MINUTES, settings.LEASE_MINUTES))
+
+
 def expire_leases(now: datetime | None = None) -> int:
     """Return overdue batches to the pool; the number of leases that ended."""
     overdue = Assignment.objects.filter(state=State.LEASED, expires_at__lte=now or timezone.now())
@@ -82,10 +88,10 @@ def current(worker: Worker, dataset: Dataset) -> Assignment | None:
     return returned or running().filter(pk__in=mine).select_related("batch").first()
 
 
-def claim(worker: Worker, dataset: Dataset) -> Assignment:
+def claim(worker: Worker, dataset: Dataset, address: str = "") -> Assignment:
     """The worker's running lease, else his expired batch if it is still free, else the next free batch.
 
-    Raises NoFreeBatch or BusyElsewhere.
+    `address` is where the request came from. Raises NoFreeBatch, BusyElsewhere or TooManyUnsaved.
     """
     for _attempt in range(MAX_TRIES):
         # In a transaction of its own: one that ends leases and then waits for a batch blocks whoever
@@ -93,13 +99,13 @@ def claim(worker: Worker, dataset: Dataset) -> Assignment:
         expire_leases()
         try:
             with transaction.atomic():
-                return claim_once(worker, dataset)
+                return claim_once(worker, dataset, address)
         except IntegrityError:
             continue
     raise NoFreeBatch(f"{dataset}: no batch for {worker} after {MAX_TRIES} tries")
 
 
-def claim_once(worker: Worker, dataset: Dataset) -> Assignment:
+def claim_once(worker: Worker, dataset: Dataset, address: str) -> Assignment:
     # Two tabs of one worker queue here, so that neither holds a second batch even for a moment.
     Worker.objects.select_for_update(no_key=True).get(pk=worker.pk)
     if held := current(worker, dataset):
@@ -107,13 +113,14 @@ def claim_once(worker: Worker, dataset: Dataset) -> Assignment:
     elsewhere = running().filter(worker=worker).exclude(batch__dataset=dataset)
     if other := elsewhere.select_related("batch__dataset").first():
         raise BusyElsewhere(other)
-    if own := regained(worker, dataset):
+    if own := regained(worker, dataset, address):
         return own
+    unsaved_leases.require_room(worker, dataset, address)
     # Skipping what others are about to take (SQLite has one writer at a time anyway).
     batch = free_batches(worker, dataset).select_for_update(no_key=True, skip_locked=True).first()
     if batch is None:
         raise NoFreeBatch(f"{dataset}: no batch for {worker}")
-    return lease(batch, worker)
+    return lease(batch, worker, address)
 
 
 def holding(batch: OuterRef) -> Exists:
@@ -147,24 +154,29 @@ def finished(worker: Worker, dataset: Dataset) -> QuerySet[Assignment]:
     return mine.select_related("batch__dataset", "layer").order_by("-submitted_at")
 
 
-def regained(worker: Worker, dataset: Dataset) -> Assignment | None:
+def regained(worker: Worker, dataset: Dataset, address: str) -> Assignment | None:
     """The worker's newest expired assignment, leased again with all its work."""
     own = own_expired(worker, dataset).first()
     if own is None:
         return None
     # The same lock as for a free batch: whoever is about to take it is let through first.
     Batch.objects.select_for_update(no_key=True).get(pk=own.batch_id)
-    changes = {"state": State.LEASED, "leased_at": timezone.now(), "expires_at": lease_end()}
+    changes: dict[str, Any] = {"state": State.LEASED, "leased_at": timezone.now(), "expires_at": lease_end()}
+    if not LayerFrame.objects.filter(layer=own.layer_id, revision__gt=0).exists():
+        unsaved_leases.require_room(worker, dataset, address)
+        changes |= {"expires_at": first_lease_end(), "takes": F("takes") + 1}
+        changes["address"] = unsaved_leases.kept(address)
     if not own_expired(worker, dataset).filter(pk=own.pk).update(**changes):
         return None
     own.refresh_from_db()
     return own
 
 
-def lease(batch: Batch, worker: Worker) -> Assignment:
+def lease(batch: Batch, worker: Worker, address: str) -> Assignment:
     name = f"batch-{batch.number:04d}-{worker.pseudonym}"
     layer = Layer.objects.create(dataset_id=batch.dataset_id, name=name, kind=Layer.Kind.ASSIGNMENT)
-    return Assignment.objects.create(batch=batch, worker=worker, layer=layer, expires_at=lease_end())
+    end, origin = first_lease_end(), unsaved_leases.kept(address)
+    return Assignment.objects.create(batch=batch, worker=worker, layer=layer, expires_at=end, address=origin)
 
 
 def locked_for_layer(layer: Layer) -> Assignment | None:

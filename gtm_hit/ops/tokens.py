@@ -8,6 +8,7 @@ from typing import Any
 from django.core.signing import BadSignature, Signer
 
 from gtm_hit.models import Assignment, Dataset, Worker
+from gtm_hit.ops import entry_links
 
 
 class BadToken(Exception):
@@ -21,6 +22,7 @@ class Entry:
     dataset: Dataset
     platform: str
     external_id: str | None
+    closed: bool = False  # to new people
 
 
 @dataclass(frozen=True)
@@ -32,15 +34,22 @@ class Seat:
 
 
 def entry_token(dataset: Dataset, platform: str = "link", external_id: str | None = None) -> str:
-    return sign("entry", [dataset.pk, platform] + ([external_id] if external_id else []))
+    if external_id:
+        return sign("entry", [dataset.pk, platform, external_id])
+    nonce = entry_links.state(dataset, platform).nonce
+    return sign("entry", [dataset.pk, platform, *(["", nonce] if nonce else [])])
 
 
 def read_entry(token: str) -> Entry:
-    dataset_id, platform, *personal = unsign("entry", token)
+    dataset_id, platform, *more = unsign("entry", token)
     dataset = Dataset.objects.filter(pk=dataset_id).first()
     if dataset is None:
         raise BadToken("the dataset is gone")
-    return Entry(dataset, platform, personal[0] if personal else None)
+    external_id, nonce = [*more, "", ""][:2]
+    if external_id:
+        return Entry(dataset, platform, external_id)
+    link = entry_links.state(dataset, platform)
+    return Entry(dataset, platform, None, closed=link.closed_at is not None or link.nonce != nonce)
 
 
 def worker_token(worker: Worker, dataset: Dataset) -> str:

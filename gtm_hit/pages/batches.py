@@ -7,9 +7,9 @@ from django.http import HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import path, reverse
 from django.utils.translation import gettext_lazy, ngettext
-from django.views.decorators.http import require_http_methods
+from django.views.decorators.http import require_http_methods, require_POST
 
-from gtm_hit.ops import batches, overview, tokens
+from gtm_hit.ops import batches, entry_links, overview, tokens
 from gtm_hit.pages.access import staff_only
 from gtm_hit.pages.datasets import summary_or_404
 
@@ -44,9 +44,22 @@ def dataset_batches(request: HttpRequest, slug: str) -> HttpResponse:
         "page": page,
         "rows": overview.with_assignments(page.object_list),
         "form": form,
+        "closed": entry_links.state(summary.dataset, "link").closed_at is not None,
         "entry_link": request.build_absolute_uri(reverse("join", args=[tokens.entry_token(summary.dataset)])),
     }
     return render(request, "staff/batches.html", context)
 
 
-urlpatterns = [path("datasets/<slug:slug>/batches/", dataset_batches, name="dataset-batches")]
+@require_POST
+@staff_only
+def switch_link(request: HttpRequest, slug: str) -> HttpResponse:
+    switch = {"close": entry_links.close, "open": entry_links.reopen}.get(request.POST.get("switch", ""))
+    if switch is not None:
+        switch(summary_or_404(slug).dataset, "link")
+    return redirect("dataset-batches", slug=slug)
+
+
+urlpatterns = [
+    path("datasets/<slug:slug>/batches/", dataset_batches, name="dataset-batches"),
+    path("datasets/<slug:slug>/batches/link/", switch_link, name="dataset-link"),
+]

@@ -10,7 +10,7 @@ from urllib.parse import urlencode
 
 from django import forms
 from django.core.paginator import Paginator
-from django.http import Http404, HttpRequest, HttpResponse, JsonResponse
+from django.http import Http404, HttpRequest, HttpResponse
 from django.shortcuts import render
 from django.urls import path
 from django.utils.safestring import mark_safe
@@ -30,8 +30,6 @@ from gtm_hit.ops.quality.comparing import (
     Scope,
     compare,
     frame_lines,
-    mark_part,
-    marks,
 )
 from gtm_hit.ops.quality.layer_rows import QualityError
 from gtm_hit.pages.access import staff_only
@@ -176,6 +174,7 @@ def compare_view(request: HttpRequest, slug: str) -> HttpResponse:
     context = {
         "dataset": asked.context["dataset"],
         "query": asked.query,
+        "marks": marks_address(asked),
         "viewer": {
             "scene": f"/api/v1/layers/{truth.pk}/",
             "truth": truth.name,
@@ -186,13 +185,13 @@ def compare_view(request: HttpRequest, slug: str) -> HttpResponse:
     return render(request, "staff/compare_view.html", context)
 
 
-@require_safe
-@never_cache
-@staff_only
-def compare_frame(request: HttpRequest, slug: str, number: int) -> HttpResponse:
-    _sides, comparison = asked_for(request, slug).required()
-    found = [mark_part(comparison, mark) for mark in marks(comparison, number)]
-    return JsonResponse({"number": number, "marks": found})
+def marks_address(asked: Asked) -> str:
+    """Where the viewer asks for a frame's marks, with 0 for the frame's number."""
+    (truth, found), comparison = asked.required()
+    wanted = asked.context["form"].cleaned_data
+    query = {"truth": truth.name, "found": found.name, "radius": comparison.radius}
+    query |= {"scope": wanted["frames"], "start": wanted["start"]}
+    return f"/api/v1/datasets/{truth.dataset.slug}/evaluation/frames/0/?{urlencode(query)}"
 
 
 def base_name(asked: Asked) -> str:
@@ -205,5 +204,4 @@ urlpatterns = [
     path("datasets/<slug:slug>/compare/view/", compare_view, name="compare-view"),
     path("datasets/<slug:slug>/compare/curve.svg", compare_curve, name="compare-curve"),
     path("datasets/<slug:slug>/compare/frames.csv", compare_csv, name="compare-csv"),
-    path("datasets/<slug:slug>/compare/frames/<int:number>/", compare_frame, name="compare-frame"),
 ]

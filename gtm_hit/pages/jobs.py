@@ -3,7 +3,7 @@ from __future__ import annotations
 from django.conf import settings
 from django.contrib import messages
 from django.core.paginator import Paginator
-from django.http import FileResponse, Http404, HttpRequest, HttpResponse, JsonResponse
+from django.http import FileResponse, Http404, HttpRequest, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import path
 from django.utils.translation import gettext as _
@@ -42,24 +42,6 @@ def job(request: HttpRequest, pk: int) -> HttpResponse:
         "more_digests": max(len(export.files) - DIGESTS_SHOWN, 0) if export else 0,
     }
     return render(request, "staff/job.html", context)
-
-
-@require_safe
-@never_cache
-@staff_only
-def job_state(request: HttpRequest, pk: int) -> HttpResponse:
-    shown = job_or_404(pk)
-    return JsonResponse(
-        {
-            "state": shown.state,
-            "label": shown.get_state_display(),
-            "done": shown.done,
-            "total": shown.total,
-            "percent": percent(shown),
-            "message": shown.message,
-            "finished": shown.finished,
-        }
-    )
 
 
 @require_POST
@@ -116,7 +98,6 @@ def percent(shown: Job) -> int:
 urlpatterns = [
     path("exports/", exports, name="exports"),
     path("jobs/<int:pk>/", job, name="job"),
-    path("jobs/<int:pk>/state/", job_state, name="job-state"),
     path("jobs/<int:pk>/cancel/", cancel, name="job-cancel"),
     path("jobs/<int:pk>/retry/", retry, name="job-retry"),
     path("jobs/<int:pk>/download/", download, name="job-download"),

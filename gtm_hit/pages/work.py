@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from datetime import timedelta
 from functools import wraps
 from typing import Any
 
@@ -13,13 +14,17 @@ from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods, require_POST, require_safe
 
 from gtm_hit.models import Layer, Worker
-from gtm_hit.ops import assignments, parts, tokens, tutorial, workers
+from gtm_hit.ops import assignments, limits, parts, tokens, tutorial, unsaved_leases, workers
+from gtm_hit.pages import browsers
 from gtm_hit.pages.access import staff_only
+from gtm_hit.pages.address import client_address
 from gtm_hit.pages.catalog import workbench_catalog
 from gtm_hit.pages.modules import imported_by
 
 # The names under which platforms put their worker's id into the address.
 ID_PARAMETERS = ["worker_id", "workerId", "PROLIFIC_PID", "participant_id"]
+# Whoever tries out ids of others is stopped; at a lab of two hundred a few come with another browser.
+NOT_PROVEN = limits.Limit("not proven", 60, timedelta(hours=1))
 PREVIEW = "ASSIGNMENT_ID_NOT_AVAILABLE"
 
 View = Callable[..., HttpResponse]
@@ -55,12 +60,45 @@ def join(request: HttpRequest, token: str) -> HttpResponse:
     if context["preview"]:
         return render(request, "work/join.html", context)
     try:
-        if request.method == "POST":
-            return to_home(workers.enter(entry.platform, external_id), entry)
-        known = workers.find(entry.platform, external_id) if external_id else None
+        if found := whoever_enters(request, entry, external_id):
+            return found
     except workers.InvalidWorkerId as error:
         return render(request, "work/join.html", {**context, "ask": True, "problem": str(error)}, status=400)
-    return to_home(known, entry) if known else render(request, "work/join.html", context)
+    if entry.closed:
+        return render(request, "work/closed.html", context, status=410)
+    return render(request, "work/join.html", context)
+
+
+def whoever_enters(request: HttpRequest, entry: tokens.Entry, external_id: str) -> HttpResponse | None:
+    """The way on for those who may go on; who else is known here, nobody learns by opening a link."""
+    if entry.external_id:
+        return personal_entry(request, entry, entry.external_id)
+    secret = browsers.secret_of(request)
+    if external_id and (worker := workers.proven(entry.platform, external_id, secret)):
+        return to_home(worker, entry)
+    if request.method != "POST" or entry.closed:
+        return None
+    return first_entry(request, entry, external_id)
+
+
+def personal_entry(request: HttpRequest, entry: tokens.Entry, external_id: str) -> HttpResponse | None:
+    if request.method != "POST" and workers.find(entry.platform, external_id) is None:
+        return None
+    secret = browsers.secret_of(request)
+    return browsers.remember(to_home(workers.enter(entry.platform, external_id, secret), entry), secret)
+
+
+def first_entry(request: HttpRequest, entry: tokens.Entry, external_id: str) -> HttpResponse:
+    address = client_address(request)
+    if wait := NOT_PROVEN.wait(address):
+        return render(request, "work/not_proven.html", {"wait": wait}, status=429)
+    secret = browsers.secret_of(request)
+    try:
+        worker = workers.enter_by_general_link(entry.platform, external_id, secret)
+    except workers.NotProven:
+        NOT_PROVEN.count(address)
+        return render(request, "work/not_proven.html", status=403)
+    return browsers.remember(to_home(worker, entry), secret)
 
 
 def to_home(worker: Worker, entry: tokens.Entry) -> HttpResponse:
@@ -94,7 +132,10 @@ def home(request: HttpRequest, token: str) -> HttpResponse:
 def start(request: HttpRequest, token: str) -> HttpResponse:
     seat = tokens.read_worker(token)
     try:
-        assignment = assignments.claim(seat.worker, seat.dataset)
+        assignment = assignments.claim(seat.worker, seat.dataset, client_address(request))
+    except unsaved_leases.TooManyUnsaved:
+        context = {"token": token, "dataset": seat.dataset}
+        return render(request, "work/too_many.html", context, status=429)
     except assignments.NoFreeBatch:
         return render(request, "work/no_batch.html", {"token": token, "dataset": seat.dataset})
     except assignments.BusyElsewhere as busy:

@@ -7,9 +7,10 @@ const part = (name) => main.querySelector(`[data-job-${name}]`);
 
 const show = (job) => {
   const state = part("state");
-  if (state.textContent !== job.label) state.textContent = job.label;
+  const label = main.dataset[job.state] ?? job.state;
+  if (state.textContent !== label) state.textContent = label;
   state.className = `state ${job.state}`;
-  part("count").textContent = job.total ? `${job.percent} %` : "";
+  part("count").textContent = job.total ? `${Math.floor((100 * job.done) / job.total)} %` : "";
   part("message").textContent = job.message;
   if (job.state !== "queued") part("waiting")?.remove();
   if (job.total) {
@@ -22,10 +23,10 @@ const poll = async () => {
   try {
     const answer = await fetch(main.dataset.job, { headers: { Accept: "application/json" } });
     // Logged out meanwhile, or the job is gone: the page itself knows what to say.
-    if (answer.redirected || answer.status === 404) return location.reload();
+    if ([401, 403, 404].includes(answer.status)) return location.reload();
     if (answer.ok) {
       const job = await answer.json();
-      if (job.finished) return location.reload();
+      if (job.finished_at) return location.reload();
       show(job);
     }
   } catch {

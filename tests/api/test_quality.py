@@ -135,6 +135,11 @@ def test_lengths_that_are_none_are_refused(db: None, name: str, value: str) -> N
     assert (response.status_code, response.json()["code"]) == (400, "invalid")
 
 
+def test_a_frame_that_was_not_compared_has_no_marks(layers: tuple[Layer, Layer]) -> None:
+    address = f"{BASE}evaluation/frames/{10**30}/?truth=truth&found=found"
+    assert bearer("read").get(address).status_code == 404
+
+
 def test_long_files_are_for_the_command_line(db: None) -> None:
     assert send(bearer("read"), "0 1 1\n" * 400_000, "").status_code == 400
     assert send(bearer("read"), "0 1 1\n" * 900_000, "").status_code == 413
@@ -155,3 +160,17 @@ def test_the_link_lets_workers_in(dataset: Dataset, staff: Caller, stranger: Cal
     assert user.get(BASE + "link/").status_code == 403
     assert bearer("read", "import", "release").get(BASE + "link/").status_code == 403
     assert bearer("work").get(BASE + "link/?platform=a%20b").status_code == 400
+
+
+def test_the_link_is_closed_and_made_anew(dataset: Dataset, staff: Caller) -> None:
+    first = staff.get(BASE + "link/").json()
+    assert first["closed"] is False
+    closed = bearer("work").post(BASE + "link/", {"closed": True})
+    assert closed.json()["closed"] is True
+    again = bearer("work").post(BASE + "link/", {"closed": False}).json()
+    assert again["closed"] is False and again["link"] != first["link"]
+
+
+def test_closing_the_link_takes_the_scope_to_work(dataset: Dataset) -> None:
+    reader = bearer("read", "import", "release")
+    assert reader.post(BASE + "link/", {"closed": True}).status_code == 403

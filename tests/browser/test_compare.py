@@ -134,7 +134,7 @@ def test_choosing_a_person_zooms_to_it_and_escape_lets_go(viewer: Page) -> None:
 
 
 def test_a_server_that_refuses_is_told_in_words(viewer: Page) -> None:
-    viewer.route("**/compare/frames/**", lambda route: route.fulfill(status=403, body="{}"))
+    viewer.route("**/evaluation/frames/**", lambda route: route.fulfill(status=403, body="{}"))
     viewer.reload()
     expect(viewer.get_by_role("alert")).to_contain_text("The server did not answer")
 

@@ -48,3 +48,23 @@ def test_a_personal_link_names_its_worker_and_creates_nothing(dataset: Dataset) 
 def test_what_makes_no_link_is_explained(dataset: Dataset, arguments: list[str], said: str) -> None:
     with pytest.raises(CommandError, match=said):
         run(*arguments)
+
+
+def test_a_link_is_closed_and_a_new_one_made(dataset: Dataset) -> None:
+    first = run("square")
+    assert "closed" in run("square", "--close")
+    assert entry(first).closed
+    with pytest.raises(CommandError, match="--open"):
+        run("square")
+    again = run("square", "--open")
+    assert not entry(again).closed and entry(first).closed
+
+
+def test_a_personal_link_is_made_while_the_general_one_is_closed(dataset: Dataset) -> None:
+    run("square", "--close")
+    assert not entry(run("square", "--worker", "ada")).closed
+
+
+def test_a_personal_link_has_no_switch(dataset: Dataset) -> None:
+    with pytest.raises(CommandError, match="personal"):
+        run("square", "--worker", "ada", "--close")

@@ -51,7 +51,7 @@ def state(assignment: Assignment) -> str:
 def test_the_first_free_batch_is_leased_with_a_layer_of_its_own(
     dataset: Dataset, alice: Worker, settings: Any
 ) -> None:
-    settings.LEASE_MINUTES = 30
+    settings.FIRST_SAVE_MINUTES = 30
     assignment = claim(alice, dataset)
     assert (assignment.batch.number, assignment.state) == (1, "leased")
     assert assignment.layer.name == f"batch-0001-{alice.pseudonym}"

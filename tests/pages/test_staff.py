@@ -23,11 +23,11 @@ PAGES = [
     "/datasets/square/layers/",
     "/exports/",
     "/jobs/{job}/",
-    "/jobs/{job}/state/",
     "/jobs/{job}/download/",
 ]
 FORMS = [
     "/datasets/square/batches/",
+    "/datasets/square/batches/link/",
     "/datasets/square/layers/own/export/",
     "/jobs/{job}/cancel/",
     "/jobs/{job}/retry/",
@@ -213,6 +213,20 @@ def test_the_entry_link_on_the_batches_page_works(staff: Client, dataset: Datase
     assert Client().get(link).status_code == 200
 
 
+def test_the_entry_link_is_closed_and_made_anew_by_buttons(staff: Client, dataset: Dataset) -> None:
+    first = text(staff.get("/datasets/square/batches/")).split('value="http://testserver')[1].split('"')[0]
+    page = text(staff.post("/datasets/square/batches/link/", {"switch": "close"}, follow=True))
+    assert "The link for workers is closed" in page and first not in page
+    assert Client().get(first).status_code == 410
+    page = text(staff.post("/datasets/square/batches/link/", {"switch": "open"}, follow=True))
+    again = page.split('value="http://testserver')[1].split('"')[0]
+    assert again != first and Client().get(again).status_code == 200
+
+
+def test_the_batches_page_says_how_to_make_a_personal_link(staff: Client, dataset: Dataset) -> None:
+    assert "manage.py makelink square --worker ID" in text(staff.get("/datasets/square/batches/"))
+
+
 def test_export_starts_one_job_however_often_it_is_pressed(staff: Client, layer: Layer) -> None:
     first = staff.post("/datasets/square/layers/own/export/")
     second = staff.post("/datasets/square/layers/own/export/")
@@ -245,8 +259,10 @@ def test_the_job_page_follows_the_job(staff: Client, job: Job) -> None:
     run.report(40, 100, "writing frames: 4 of 10")
     page = text(staff.get(address))
     assert "running" in page and 'value="40" max="100"' in page and "writing frames: 4 of 10" in page
-    state = staff.get(address + "state/").json()
-    assert (state["state"], state["percent"], state["finished"]) == ("running", 40, False)
+    asked = page.split('data-job="')[1].split('"')[0]
+    state = staff.get(asked).json()
+    assert (state["state"], state["done"], state["total"]) == ("running", 40, 100)
+    assert state["finished_at"] is None
     run.fail("The disk is full.")
     page = text(staff.get(address))
     assert "The disk is full." in page and "Try again" in page and "http-equiv" not in page

@@ -6,7 +6,7 @@ from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.urls import reverse
 
 from gtm_hit.models import Dataset
-from gtm_hit.ops import tokens, workers
+from gtm_hit.ops import entry_links, tokens, workers
 
 
 class Command(BaseCommand):
@@ -16,11 +16,16 @@ class Command(BaseCommand):
         parser.add_argument("slug")
         parser.add_argument("--worker", default="", help="the worker's id; the link then works for him only")
         parser.add_argument("--platform", default="link", help="where the workers come from (default: link)")
+        switch = parser.add_mutually_exclusive_group()
+        switch.add_argument("--close", action="store_true", help="let nobody new in by the general link")
+        switch.add_argument("--open", action="store_true", help="make a new general link after --close")
         parser.add_argument("--base-url", default="http://127.0.0.1:8000", help="address of this server")
 
     def handle(
         self, *args: Any, slug: str, worker: str, platform: str, base_url: str, **options: Any
     ) -> None:
+        if worker and (options["close"] or options["open"]):
+            raise CommandError("--close and --open are for the general link, --worker is for a personal one.")
         dataset = Dataset.objects.filter(slug=slug).first()
         if dataset is None:
             raise CommandError(f"There is no dataset {slug!r}.")
@@ -29,5 +34,13 @@ class Command(BaseCommand):
             external_id = workers.clean_external_id(worker) if worker else None
         except workers.InvalidWorkerId as error:
             raise CommandError(str(error)) from error
+        if options["close"]:
+            entry_links.close(dataset, platform)
+            self.stdout.write("The link is closed. Whoever works already goes on; personal links work.")
+            return
+        if options["open"]:
+            entry_links.reopen(dataset, platform)
+        elif not worker and entry_links.state(dataset, platform).closed_at:
+            raise CommandError("The link is closed; --open makes a new one.")
         token = tokens.entry_token(dataset, platform, external_id)
         self.stdout.write(base_url.rstrip("/") + reverse("join", args=[token]))

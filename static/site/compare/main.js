@@ -54,7 +54,7 @@ async function look(store, images) {
 }
 
 async function marksOf(number) {
-  const response = await fetch(marks.replace("/0/", `/${number}/`), { cache: "no-store" });
-  if (!response.ok || response.redirected) throw new Error(gettext("The server did not answer; load the page again."));
+  const response = await fetch(marks.replace("/frames/0/", `/frames/${number}/`), { cache: "no-store" });
+  if (!response.ok) throw new Error(gettext("The server did not answer; load the page again."));
   return (await response.json()).marks;
 }
