@@ -168,15 +168,14 @@ export class Saver extends Emitter {
       if (!slot) continue;
       slot.edits += 1;
       slot.refused = null;
-      this._keep(frame, slot, true);
+      this._keep(frame, slot);
     }
     this._schedule(DELAY);
     this.emit("status");
   }
 
-  /** @param {boolean} patient one edit of many; what was sent or asked is written at once */
-  _keep(frame, slot, patient = false) {
-    this._journal.write(frame, () => recordOf(slot, this._store.frame(frame), this._activity.waiting(frame)), patient);
+  _keep(frame, slot) {
+    this._journal.write(frame, () => recordOf(slot, this._store.frame(frame), this._activity.waiting(frame)));
   }
 
   /** The first edit starts the clock; later ones don't push it back. */
