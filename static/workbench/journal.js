@@ -29,6 +29,7 @@ export class Journal {
     this._formerly = formerly;
     this._database = database;
     this._tab = tab;
+    this._failed = false; // the last write, for want of room for instance
     this._takenOver = new Map(); // frame → keys of records that the next write of the frame replaces
     this._waiting = new Map();
     this._writing = new Set();
@@ -37,6 +38,10 @@ export class Journal {
 
   /** Whether edits survive a crash in this browser. */
   get keeps() {
+    return this._isOpen && !this._failed;
+  }
+
+  get _isOpen() {
     return this._database !== null && this._database.isOpen;
   }
 
@@ -72,7 +77,7 @@ export class Journal {
 
   /** From its next write on, this tab's record of the frame stands for this one as well: never both, never none. */
   takeOver({ layer, tab, frame }) {
-    if (!this.keeps || (layer === this._layer && tab === this._tab.name)) return;
+    if (!this._isOpen || (layer === this._layer && tab === this._tab.name)) return;
     this._takenOver.set(frame, [...(this._takenOver.get(frame) ?? []), [layer, tab, frame]]);
   }
 
@@ -114,7 +119,7 @@ export class Journal {
 
   /** A database that cannot be read keeps nobody from working. */
   async _tried(work) {
-    if (!this.keeps) return undefined;
+    if (!this._isOpen) return undefined;
     try {
       return await work();
     } catch (error) {
@@ -124,7 +129,7 @@ export class Journal {
   }
 
   _queue(name, work, pause = 0) {
-    if (!this.keeps) return;
+    if (!this._isOpen) return;
     this._waiting.set(name, work);
     if (!this._writing.has(name)) this._drain(name, pause);
   }
@@ -137,7 +142,9 @@ export class Journal {
       this._waiting.delete(name);
       try {
         await work();
+        this._failed = false;
       } catch (error) {
+        this._failed = true;
         console.warn("the journal could not be written", error);
       }
       if (pause) await this._pause(name, pause);
