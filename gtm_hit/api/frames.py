@@ -119,7 +119,9 @@ class SceneView(PlacedView):
                 "frames": scene.frames_part(place.frames, parts),
                 "layer": {
                     "id": place.layer.pk,
+                    "key": place.layer.key,
                     "name": place.layer.name,
+                    "created_at": place.layer.created_at,
                     "first": place.part.first if place.part else None,
                 },
                 "editable": not place.read_only_reason,

@@ -52,7 +52,9 @@ class SceneSerializer(serializers.Serializer[Any]):
     foot_rule = serializers.CharField()
     cameras = SceneCameraSerializer(many=True)
     frames = SceneFrameSerializer(many=True)
-    layer = serializers.DictField()
+    layer = serializers.DictField(
+        help_text="id, name, key (no other layer has it, on no server), created_at, first (number, of a part)"
+    )
     editable = serializers.BooleanField()
     read_only_reason = serializers.CharField()
     assignment = serializers.DictField(allow_null=True)

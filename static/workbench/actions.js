@@ -8,6 +8,7 @@ import { Heads } from "./heads.js";
 import { keyFor } from "./keys.js";
 import { gettext } from "./messages.js";
 import { Moving } from "./moving.js";
+import { saveWords } from "./save_words.js";
 import { Sightings } from "./sightings.js";
 import { Sizes } from "./sizes.js";
 import { Tour } from "./tour.js";
@@ -184,7 +185,7 @@ export class Actions {
 
   async save() {
     const saved = await this.saver.flush();
-    if (saved) this.notices.say(gettext("Everything is saved"));
+    this.notices.say(saved ? gettext("Everything is saved") : saveWords(this.saver.status(), null).text);
   }
 
   toggleZoom() {

@@ -1,4 +1,5 @@
 const IDLE = 30_000; // ms without a key, click or movement, after which an annotator is taken to be away
+const SENT_IN = 100; // ms; what is less waits for the next save
 
 /** Active seconds per frame: time between two signs of life counts when they are close enough. */
 export class Activity {
@@ -12,14 +13,32 @@ export class Activity {
   note(frame) {
     const now = this._now();
     const passed = now - this._last;
-    if (passed < IDLE) this._milliseconds.set(frame, (this._milliseconds.get(frame) ?? 0) + passed);
+    if (passed < IDLE) this._add(frame, passed);
     this._last = now;
   }
 
   /** Seconds since the last take. */
   take(frame) {
-    const seconds = (this._milliseconds.get(frame) ?? 0) / 1000;
-    this._milliseconds.delete(frame);
-    return Math.round(seconds * 10) / 10;
+    const tenths = Math.floor(this._of(frame) / SENT_IN);
+    this._milliseconds.set(frame, this._of(frame) - tenths * SENT_IN);
+    return tenths / 10;
+  }
+
+  /** Taken, and not counted by the server: they go with the next save. */
+  giveBack(frame, seconds) {
+    this._add(frame, seconds * 1000);
+  }
+
+  /** Seconds nobody has taken yet. */
+  waiting(frame) {
+    return this._of(frame) / 1000;
+  }
+
+  _of(frame) {
+    return this._milliseconds.get(frame) ?? 0;
+  }
+
+  _add(frame, milliseconds) {
+    this._milliseconds.set(frame, this._of(frame) + milliseconds);
   }
 }

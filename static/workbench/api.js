@@ -16,6 +16,7 @@ export class ApiError extends Error {
 export class NetworkError extends Error {}
 
 const TIMEOUT = 20_000; // ms; a save is a few kilobytes, so anything slower is a dead connection
+const TIMEOUT_OF_PICTURES = 120_000;
 
 /** What the workbench calls. `base` ends with a slash. */
 export class Api {
@@ -60,31 +61,34 @@ export class Api {
 
   /** An image's bytes; `signal` gives up on views nobody looks at any more. */
   async blob(address, signal) {
-    const response = await this._fetch(address, { headers: this._headers(), signal });
-    if (!response.ok) throw await errorOf(response);
-    return response.blob();
+    const limited = AbortSignal.any([signal, AbortSignal.timeout(TIMEOUT_OF_PICTURES)].filter(Boolean));
+    return this._fetch(address, { headers: this._headers(), signal: limited }, (response) => response.blob());
   }
 
   async _json(method, path, body, { keepalive = false } = {}) {
     const headers = { ...this._headers(), Accept: "application/json" };
     if (body !== undefined) headers["Content-Type"] = "application/json";
-    const response = await this._fetch(this.base + path, {
+    const options = {
       method,
       headers,
       keepalive,
       body: body === undefined ? undefined : JSON.stringify(body),
-      signal: keepalive ? undefined : AbortSignal.timeout(TIMEOUT),
+      signal: AbortSignal.timeout(TIMEOUT), // with `keepalive` too: the page is often only hidden
       cache: "no-store",
-    });
-    if (!response.ok) throw await errorOf(response);
-    return response.json();
+    };
+    return this._fetch(this.base + path, options, (response) => response.json());
   }
 
-  async _fetch(address, options) {
+  /** `read` its body; a connection can also break, or stop, in the middle of it. */
+  async _fetch(address, options, read) {
     try {
-      return await fetch(address, { credentials: "same-origin", ...options });
+      const response = await fetch(address, { credentials: "same-origin", ...options });
+      if (!response.ok) throw await errorOf(response);
+      return await read(response);
     } catch (error) {
-      if (error.name === "AbortError") throw error;
+      if (error.name === "AbortError" || error instanceof ApiError) throw error;
+      // A page of something on the way, a sign-in to the network for instance, is no answer of the server.
+      if (error instanceof SyntaxError) throw new ApiError(200, "unreadable", error.message);
       throw new NetworkError(error.message);
     }
   }
@@ -96,6 +100,6 @@ export class Api {
 }
 
 async function errorOf(response) {
-  const body = await response.json().catch(() => ({}));
-  return new ApiError(response.status, body.code ?? "unknown", body.message ?? response.statusText, body.details);
+  const body = await response.json().catch(() => null);
+  return new ApiError(response.status, body?.code ?? "unknown", body?.message ?? response.statusText, body?.details);
 }

@@ -1,6 +1,6 @@
 /** The browser's own database, as promises. Private windows may refuse it: then `open` throws. */
 const NAME = "ground-truth-marker";
-const VERSION = 2;
+const VERSION = 3;
 
 export const FRAMES = "frames"; // edits not yet acknowledged, one record per tab, layer and frame
 export const HISTORIES = "histories"; // undo and redo, one record per tab and layer
@@ -15,12 +15,25 @@ export async function openDatabase() {
 class Database {
   constructor(connection) {
     this._connection = connection;
+    this.isOpen = true;
     // Another tab with a newer program wants to upgrade: let it, instead of blocking it for ever.
-    connection.onversionchange = () => connection.close();
+    connection.onversionchange = () => {
+      connection.close();
+      this.isOpen = false;
+    };
+    connection.onclose = () => (this.isOpen = false); // the browser threw it away: storage cleared, disk full
   }
 
   put(store, value) {
     return this._run(store, "readwrite", (objects) => objects.put(value));
+  }
+
+  /** Write one value (unless null) and delete others: both or nothing. */
+  replace(store, value, keys) {
+    return this._run(store, "readwrite", (objects) => {
+      const requests = keys.map((key) => objects.delete(key));
+      return value ? objects.put(value) : requests.at(-1);
+    });
   }
 
   delete(store, key) {
@@ -46,11 +59,11 @@ class Database {
   }
 }
 
-/** Edits nobody has yet are carried through every version; undo steps are not worth that. */
+/** Edits nobody has yet are carried through every version; undo steps and dismissed warnings are not worth that. */
 function upgrade(database, from) {
   const make = (name, keyPath) => database.createObjectStore(name, { keyPath });
   if (from < 1) make(FRAMES, ["layer", "tab", "frame"]).createIndex("layer", "layer");
-  else database.deleteObjectStore(HISTORIES);
+  for (const name of [HISTORIES, DISMISSED]) if (database.objectStoreNames.contains(name)) database.deleteObjectStore(name);
   make(HISTORIES, ["layer", "tab"]).createIndex("layer", "layer");
   make(DISMISSED, "layer");
 }

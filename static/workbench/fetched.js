@@ -3,6 +3,7 @@ import { gettext } from "./messages.js";
 const IMPORTED = /\bfrom\s*"(\.[^"]+)"/g;
 const BESIDE = 500; // ms after the first action: opening is over, and nobody misses the network
 const LEAVING = 600; // ms; a page that is being left stops its requests, but runs no timers any more
+const TIMEOUT = 20_000; // ms; whoever waits for a part on a dead connection would wait for ever
 const MEANT_FOR_IT = 1000; // ms in which keys pressed after asking for a dialog are not meant for the page
 // Whatever the page itself is made of is here before this line is run.
 const present = new Set(performance.getEntriesByType("resource").map(({ name }) => name));
@@ -63,7 +64,7 @@ async function load(address) {
 
 async function reach(address, seen) {
   seen.add(address);
-  const answer = await fetch(address);
+  const answer = await fetch(address, { signal: AbortSignal.timeout(TIMEOUT) });
   if (!answer.ok) throw new Error(`${address} answers ${answer.status}`);
   const text = await answer.text();
   const imported = [...text.matchAll(IMPORTED)].map(([, relative]) => new URL(relative, address).href);

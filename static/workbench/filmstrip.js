@@ -133,6 +133,7 @@ export class Filmstrip {
     const view = views[Math.floor(((event.clientX - left) / width) * views.length)];
     if (event.detail > 0) event.currentTarget.blur();
     await this.walk.jump(number);
+    if (this.store.current !== number) return; // it could not be loaded
     this.store.select(person);
     const pane = this.panes.all.find((one) => one.view.index === view);
     if (pane && event.detail > 0) this.panes.activate(pane);

@@ -2,6 +2,7 @@ import { carriedOf } from "./annotation.js";
 import { ApiError } from "./api.js";
 import { ask } from "./dialogs.js";
 import { element } from "./dom.js";
+import { failureWords } from "./failure_words.js";
 import { gettext, ngettext } from "./messages.js";
 
 /** What there is to say about every frame of a batch before it is handed in. */
@@ -17,17 +18,24 @@ export async function finishAssignment({ store, saver, api, walk, notices, home 
   const saved = await saver.flush();
   const rows = summary(store);
   const unfinished = rows.filter(({ done }) => !done);
-  const answer = await ask({
+  const waiting = element("p", { role: "status", hidden: saved }, saved ? "" : gettext("Some edits are not saved yet; wait until “All saved” is shown."));
+  const answered = ask({
     title: unfinished.length
       ? ngettext("{n} frame is not finished yet", "{n} frames are not finished yet", unfinished.length)
       : gettext("All {n} frames are done", { n: rows.length }),
-    body: [table(rows), saved ? "" : gettext("Some edits are not saved yet; wait until “All saved” is shown.")].filter(Boolean),
+    body: [table(rows), waiting],
     buttons: [
       { id: "submit", label: gettext("Submit"), main: true, disabled: unfinished.length > 0 || !saved },
       ...(unfinished.length ? [{ id: "first", label: gettext("Go to the first unfinished frame") }] : []),
       { id: "stay", label: gettext("Back to annotating") },
     ],
   });
+  const stop = saver.on("status", () => {
+    if (saver.unsaved) return;
+    waiting.hidden = true;
+    waiting.closest("dialog").querySelector('[data-answer="submit"]').disabled = unfinished.length > 0;
+  });
+  const answer = await answered.finally(stop);
   if (answer === "first") return walk.open(unfinished[0].number);
   if (answer?.startsWith("frame ")) return walk.open(Number(answer.slice(6)));
   if (answer === "submit") return submit({ api, walk, notices, home });
@@ -39,7 +47,7 @@ async function submit({ api, walk, notices, home }) {
     window.location.assign(home);
   } catch (error) {
     const frames = error instanceof ApiError && error.code === "unfinished" ? error.details.frames : [];
-    notices.say(gettext("Not submitted: {reason}", { reason: error.message }));
+    notices.say(gettext("Not submitted: {reason}", { reason: failureWords(error) }));
     if (frames.length) return walk.open(frames[0]);
   }
 }

@@ -1,7 +1,7 @@
 import { byPerson } from "./annotation.js";
-import { NetworkError } from "./api.js";
 import * as commands from "./commands.js";
 import { element, setText } from "./dom.js";
+import { failureWords } from "./failure_words.js";
 import { keyFor } from "./keys.js";
 import { LOOKS } from "./looks.js";
 import { same } from "./merge.js";
@@ -50,7 +50,7 @@ export class FrameHistory {
     this._show(null);
     setText(this._title, gettext("History of frame {place}", { place: this.store.numbers.indexOf(number) + 1 }));
     setText(this._words, gettext("Loading…"));
-    const revisions = await this._ask(async () => {
+    const revisions = await this._ask(asked, async () => {
       await this.saver.flush(); // what is on the screen is then in the list too
       return (await this.api.history(number)).revisions;
     });
@@ -93,17 +93,17 @@ export class FrameHistory {
 
   async _choose(number, revision) {
     const asked = (this._asked += 1);
-    const state = await this._ask(() => this.api.frame(number, `?revision=${revision}`));
+    const state = await this._ask(asked, () => this.api.frame(number, `?revision=${revision}`));
     if (!state || asked !== this._asked) return;
     this._show({ revision, people: byPerson(state.annotations), done: state.done, nobody: state.nobody });
   }
 
-  async _ask(question) {
+  async _ask(asked, question) {
     try {
       return await question();
     } catch (error) {
-      if (!(error instanceof NetworkError)) throw error;
-      setText(this._words, gettext("The history did not arrive: the network does not answer."));
+      const reason = failureWords(error);
+      if (asked === this._asked) setText(this._words, gettext("The history did not arrive: {reason}.", { reason }));
       return null;
     }
   }

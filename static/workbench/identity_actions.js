@@ -1,6 +1,6 @@
-import { NetworkError } from "./api.js";
 import { fetchedDialog } from "./fetched.js";
 import { keyFor } from "./keys.js";
+import { loadMissing } from "./load_missing.js";
 import { gettext, ngettext } from "./messages.js";
 
 /** What an annotator does about who is who. Every row shows what it will change, then runs one command. */
@@ -50,13 +50,6 @@ export class IdentityActions {
     const missing = this.store.numbers.filter((number) => !this.store.frame(number).loaded);
     if (!missing.length) return true;
     this.notices.say(ngettext("Loading {n} frame…", "Loading {n} frames…", missing.length));
-    try {
-      await this.loader.loadAll(missing);
-    } catch (error) {
-      if (!(error instanceof NetworkError)) throw error;
-      this.notices.say(gettext("Not possible now: the other frames could not be loaded"));
-      return false;
-    }
-    return true;
+    return loadMissing(this, missing);
   }
 }

@@ -1,41 +1,48 @@
 import { DISMISSED, FRAMES, HISTORIES, openDatabase } from "./database.js";
 import { joinTabs, shareNumbers } from "./tabs.js";
 
-// Between two writes of one record while a key is held, ms. Undo steps are worth less than what is annotated.
-const PAUSE = 300;
-const PAUSE_OF_HISTORY = 1000;
+const PAUSE_OF_HISTORY = 1000; // ms between two writes; undo steps are worth less than what is annotated
 
 /**
  * Keeps what the server has not acknowledged, so that a crash, a closed lid or an expired session loses nothing.
- * Writing never blocks an edit: one write at a time per record, always of the newest value. The first edit is
- * written at once, those of a burst a moment later together: each write copies the whole record.
+ * Writing never blocks an edit: one write at a time per record, always of the newest value. Edits are written at
+ * once, those that come during a write together after it: a browser that is killed loses what is being written.
  */
 export class Journal {
-  /** @param {string} layer whose edits; null: nothing is kept (tutorial) */
-  static async open(layer) {
+  /**
+   * @param {string} layer whose edits: a name no other layer has, on no server; null: nothing is kept (tutorial)
+   * @param {string|null} formerly its name in earlier versions, which layers of other databases may have, too
+   */
+  static async open(layer, formerly = null) {
     if (layer === null) return new Journal(layer, null, null);
     try {
       const [database, tab] = await Promise.all([openDatabase(), joinTabs(layer)]);
-      return new Journal(layer, database, tab);
+      return new Journal(layer, database, tab, formerly);
     } catch (error) {
       console.warn("edits cannot be kept in this browser", error);
       return new Journal(layer, null, null);
     }
   }
 
-  constructor(layer, database, tab) {
+  constructor(layer, database, tab, formerly = null) {
     this._layer = layer;
+    this._formerly = formerly;
     this._database = database;
     this._tab = tab;
+    this._failed = false; // the last write, for want of room for instance
+    this._takenOver = new Map(); // frame → keys of records that the next write of the frame replaces
     this._waiting = new Map();
     this._writing = new Set();
-    this._urgent = new Set(); // records that must not wait for the end of their pause
     this._pauses = new Map(); // record → ends its pause
   }
 
   /** Whether edits survive a crash in this browser. */
   get keeps() {
-    return this._database !== null;
+    return this._isOpen && !this._failed;
+  }
+
+  get _isOpen() {
+    return this._database !== null && this._database.isOpen;
   }
 
   /** From now on this tab and the others of the layer give away different person numbers. */
@@ -45,33 +52,38 @@ export class Journal {
 
   /**
    * @param {() => object} record made when it is written, so that a burst of edits costs one write
-   * @param {boolean} patient one edit of many: it may wait a moment
    */
-  write(frame, record, patient = false) {
-    const work = () => this._database.put(FRAMES, { ...record(), layer: this._layer, tab: this._tab.name, frame });
-    this._queue(`frame ${frame}`, work, patient);
+  write(frame, record) {
+    const value = () => ({ ...record(), layer: this._layer, tab: this._tab.name, frame });
+    this._queue(`frame ${frame}`, () => this._replace(frame, value()));
   }
 
   clear(frame) {
-    this._queue(`frame ${frame}`, () => this._database.delete(FRAMES, [this._layer, this._tab.name, frame]));
+    this._queue(`frame ${frame}`, () => this._replace(frame, null));
   }
 
-  /** Edits of this tab before its reload, and of tabs that are gone; oldest first. */
+  /**
+   * Edits of this tab before its reload, and of tabs that are gone; oldest first. `formerly`: kept under the
+   * name of earlier versions, so they may be another layer's.
+   */
   async recover() {
-    if (!this.keeps) return [];
-    const records = await this._database.ofLayer(FRAMES, this._layer);
-    const mine = records.filter(({ tab }) => tab === this._tab.name || !this._tab.alive.has(tab));
+    const records = await this._tried(async () => [
+      ...(await this._database.ofLayer(FRAMES, this._layer)),
+      ...(this._formerly === null ? [] : await this._database.ofLayer(FRAMES, this._formerly)).map((one) => ({ ...one, formerly: true })),
+    ]);
+    const mine = (records ?? []).filter(({ tab }) => tab === this._tab.name || !this._tab.alive.has(tab));
     return mine.sort((one, other) => one.at - other.at);
   }
 
-  /** An adopted record of another tab now lives under this tab's name. */
-  async drop(record) {
-    if (record.tab !== this._tab.name) await this._database.delete(FRAMES, [record.layer, record.tab, record.frame]);
+  /** From its next write on, this tab's record of the frame stands for this one as well: never both, never none. */
+  takeOver({ layer, tab, frame }) {
+    if (!this._isOpen || (layer === this._layer && tab === this._tab.name)) return;
+    this._takenOver.set(frame, [...(this._takenOver.get(frame) ?? []), [layer, tab, frame]]);
   }
 
   writeHistory(dump) {
     const work = () => this._database.put(HISTORIES, { layer: this._layer, tab: this._tab.name, at: Date.now(), ...dump() });
-    this._queue("history", work, true);
+    this._queue("history", work, PAUSE_OF_HISTORY);
   }
 
   /** Write what waits: the page goes away. */
@@ -80,13 +92,14 @@ export class Journal {
   }
 
   /** Steps of this tab before its reload, else those of the tab that was closed or crashed last. */
-  async takeHistory() {
-    if (!this.keeps) return undefined;
-    const records = await this._database.ofLayer(HISTORIES, this._layer);
-    const mine = records.find(({ tab }) => tab === this._tab.name);
-    const left = records.filter(({ tab }) => tab !== this._tab.name && !this._tab.alive.has(tab));
-    await Promise.all(left.map(({ layer, tab }) => this._database.delete(HISTORIES, [layer, tab])));
-    return mine ?? left.sort((one, other) => other.at - one.at)[0];
+  takeHistory() {
+    return this._tried(async () => {
+      const records = await this._database.ofLayer(HISTORIES, this._layer);
+      const mine = records.find(({ tab }) => tab === this._tab.name);
+      const left = records.filter(({ tab }) => tab !== this._tab.name && !this._tab.alive.has(tab));
+      await Promise.all(left.map(({ layer, tab }) => this._database.delete(HISTORIES, [layer, tab])));
+      return mine ?? left.sort((one, other) => other.at - one.at)[0];
+    });
   }
 
   writeDismissed(keys) {
@@ -94,40 +107,55 @@ export class Journal {
   }
 
   async readDismissed() {
-    return this.keeps ? ((await this._database.get(DISMISSED, this._layer))?.keys ?? []) : [];
+    return (await this._tried(() => this._database.get(DISMISSED, this._layer)))?.keys ?? [];
   }
 
-  _queue(name, work, patient = false) {
-    if (!this.keeps) return;
-    this._waiting.set(name, work);
-    if (!patient) {
-      this._urgent.add(name);
-      this._pauses.get(name)?.();
+  async _replace(frame, value) {
+    const own = [this._layer, this._tab.name, frame];
+    const gone = this._takenOver.get(frame) ?? [];
+    await this._database.replace(FRAMES, value, value ? gone : [own, ...gone]);
+    this._takenOver.set(frame, (this._takenOver.get(frame) ?? []).filter((key) => !gone.includes(key)));
+  }
+
+  /** A database that cannot be read keeps nobody from working. */
+  async _tried(work) {
+    if (!this._isOpen) return undefined;
+    try {
+      return await work();
+    } catch (error) {
+      console.warn("the journal could not be read", error);
+      return undefined;
     }
-    if (!this._writing.has(name)) this._drain(name);
   }
 
-  async _drain(name) {
+  _queue(name, work, pause = 0) {
+    if (!this._isOpen) return;
+    this._waiting.set(name, work);
+    if (!this._writing.has(name)) this._drain(name, pause);
+  }
+
+  async _drain(name, pause) {
     this._writing.add(name);
     await Promise.resolve(); // after the whole edit, also when it touches a frame several times
     while (this._waiting.has(name)) {
       const work = this._waiting.get(name);
       this._waiting.delete(name);
-      this._urgent.delete(name);
       try {
         await work();
+        this._failed = false;
       } catch (error) {
+        this._failed = true;
         console.warn("the journal could not be written", error);
       }
-      if (!this._urgent.has(name)) await this._pause(name);
+      if (pause) await this._pause(name, pause);
     }
     this._writing.delete(name);
   }
 
-  async _pause(name) {
+  async _pause(name, pause) {
     await new Promise((resolve) => {
       this._pauses.set(name, resolve);
-      setTimeout(resolve, name === "history" ? PAUSE_OF_HISTORY : PAUSE);
+      setTimeout(resolve, pause);
     });
     this._pauses.delete(name);
   }

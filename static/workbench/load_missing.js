@@ -1,4 +1,4 @@
-import { NetworkError } from "./api.js";
+import { failureWords } from "./failure_words.js";
 import { gettext } from "./messages.js";
 
 /** Make sure frames of a long layer are there. @returns {Promise<boolean>} false: said that they could not be loaded */
@@ -8,8 +8,11 @@ export async function loadMissing({ store, loader, notices }, numbers) {
     await loader.loadAll(missing);
     return true;
   } catch (error) {
-    if (!(error instanceof NetworkError)) throw error;
-    notices.say(gettext("Not possible now: the other frames could not be loaded"));
+    sayNotLoaded(notices, error);
     return false;
   }
+}
+
+function sayNotLoaded(notices, error) {
+  notices.say(gettext("Not possible now: the other frames could not be loaded, {reason}", { reason: failureWords(error) }));
 }

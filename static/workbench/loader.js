@@ -19,9 +19,9 @@ export class Loader {
     this._install(states);
   }
 
-  /** Make sure a frame is there; `again`: take the server's newest state even so. */
+  /** Make sure a frame is there; `again`: take the server's newest state even so, and keep what is edited meanwhile. */
   async load(number, again) {
-    if (again) this._saver.install(await this._api.frame(number));
+    if (again) this._saver.refresh(await this._api.frame(number));
     else if (!this._store.frame(number).loaded) this._install((await this._api.frames(this._around(number))).frames);
   }
 

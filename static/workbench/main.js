@@ -1,4 +1,6 @@
+import { ApiError, NetworkError } from "./api.js";
 import { element } from "./dom.js";
+import { failureWords } from "./failure_words.js";
 import { fetchParts } from "./fetched.js";
 import { gettext } from "./messages.js";
 import { openSession } from "./session.js";
@@ -7,6 +9,11 @@ import { buildWorkbench } from "./workbench.js";
 
 const { mode, home } = document.body.dataset;
 const root = document.getElementById("workbench");
+
+function reason(error) {
+  if (!(error instanceof NetworkError || error instanceof ApiError)) return error.message;
+  return gettext("It could not be loaded: {reason}.", { reason: failureWords(error) });
+}
 
 try {
   await buildWorkbench(root, await openSession(await started), { mode, home });
@@ -20,7 +27,7 @@ try {
       "div",
       { className: "start-problem", role: "alert" },
       element("h1", {}, gettext("The workbench could not start")),
-      element("p", {}, error.message),
+      element("p", {}, reason(error)),
       element("p", {}, gettext("Nothing is lost: edits are kept on this computer until the server has them.")),
       element("button", { type: "button", className: "main", onclick: () => window.location.reload() }, gettext("Try again")),
       element("a", { href: home }, gettext("Back")),

@@ -26,7 +26,7 @@ export class Playback extends Emitter {
     const { store, walk } = this;
     if (store.numbers.length < 2) return;
     walk.lookAhead(true);
-    if (store.neighbour(1) === undefined) walk.look(store.numbers[0]);
+    if (store.neighbour(1) === undefined) this._show(store.numbers[0]);
     this._due = performance.now() + this._interval;
     document.addEventListener("pointerdown", this._onPointer, { capture: true });
     this._ask();
@@ -58,9 +58,14 @@ export class Playback extends Emitter {
     if (now >= this._due && this._ready(next)) {
       // Keep the beat; after a wait for pictures, or in a hidden tab, start a new one.
       this._due = now - this._due < this._interval ? this._due + this._interval : now + this._interval;
-      this.walk.look(next);
+      this._show(next);
     }
     this._ask();
+  }
+
+  /** A frame that cannot be loaded ends the film where it is. */
+  async _show(number) {
+    if (!(await this.walk.look(number))) this.stop();
   }
 
   /** A picture that failed for good does not hold up the others. */

@@ -1,11 +1,15 @@
-import { annotation, asList, byPerson, carriedOf } from "./annotation.js";
+import { annotation, carriedOf } from "./annotation.js";
 import { ApiError, NetworkError } from "./api.js";
+import { baseOf, isSame, plain, readRecord, recordOf, stateOf } from "./edit_record.js";
 import { Emitter } from "./emitter.js";
 import { uuid4 } from "./identifiers.js";
-import { mergeFlag, mergePeople, samePeople } from "./merge.js";
+import { mergeFlag, mergePeople } from "./merge.js";
 
 const DELAY = 700; // ms from an edit to its save
+const FIRST_RETRY = 1000;
 const SLOWEST_RETRY = 30_000;
+const ROUNDS = 4; // of a flush: a save under way, what was edited meanwhile, and what was put together after it
+const REFUSALS = [400, 404, 413]; // sending the same again would not help
 
 /**
  * Saves whole frames. What has been sent is sent again, unchanged and under the same save id, until it is
@@ -32,26 +36,43 @@ export class Saver extends Emitter {
 
   /** Take the server's state of a frame as the base of the next edits. */
   install(state) {
-    this._slots.set(state.number, { base: baseOf(state), sending: null, busy: false, edits: 0, added: new Set(), question: null, refused: null });
-    this._store.install(state.number, baseOf(state), "server");
+    const { number } = state;
+    const added = this._slots.get(number)?.added ?? new Set();
+    this._slots.set(number, { base: baseOf(state), sending: null, busy: null, edits: 0, added, question: null, refused: null });
+    this._store.install(number, baseOf(state), "server");
+  }
+
+  /** The server's state of a frame that was asked for anew: what was edited or saved meanwhile stays. */
+  refresh(state) {
+    const slot = this._slots.get(state.number);
+    if (slot.edits === 0 && slot.base.revision <= state.revision) return this.install(state);
+    // A save that has begun brings the newer state itself.
+    if (slot.edits && !slot.sending && !slot.question && slot.base.revision < state.revision) this._merge(state.number, slot, state);
   }
 
   /** Edits of an earlier visit that the server may not have: they go on from where they started. */
   adopt(record) {
-    const slot = this._slots.get(record.frame);
+    const { frame } = record;
+    const slot = this._slots.get(frame);
     if (!slot) return;
-    const ours = stateOf(record.ours);
-    if (slot.edits === 0) {
-      slot.base = { revision: record.base.revision, ...stateOf(record.base) };
-      slot.sending = record.sending ? { ...record.sending, edits: record.edits } : null;
-      slot.question = revived(record.question);
-      this._store.install(record.frame, ours, "journal");
-    } else {
-      this._bringTogether(record.frame, slot, stateOf(record.base), ours, "journal");
+    const kept = readRecord(record);
+    const untouched = slot.edits === 0;
+    if (untouched && kept.base.revision !== undefined) this._goOn(frame, slot, kept);
+    else {
+      const base = slot.base;
+      if (untouched) this._store.install(frame, kept.ours, "journal");
+      this._bringTogether(frame, slot, kept.base, untouched ? base : kept.ours, "journal");
     }
-    slot.edits += record.edits;
-    this._keep(record.frame, slot);
+    for (const person of kept.added) slot.added.add(person);
+    slot.edits += kept.edits;
+    this._activity.giveBack(frame, kept.seconds);
+    this._keep(frame, slot);
     this._schedule(0);
+  }
+
+  _goOn(frame, slot, { base, ours, sending, question }) {
+    Object.assign(slot, { base, sending, question });
+    this._store.install(frame, ours, "journal");
   }
 
   revision(frame) {
@@ -91,19 +112,30 @@ export class Saver extends Emitter {
     this.emit("status");
   }
 
-  /** Save at once; resolves when everything that could be sent has been answered. */
+  /** Save at once; resolves when everything that could be sent has been answered, also what was under way. */
   async flush() {
     clearTimeout(this._timer);
     this._timer = null;
-    await Promise.all([...this._slots.keys()].map((frame) => this._send(frame)));
+    await this._underWay();
+    for (let round = 0; round < ROUNDS && (round === 0 || this._canGoOn()); round += 1) {
+      await Promise.all([...this._slots.keys()].map((frame) => this._send(frame)));
+    }
     this.emit("status");
     return this.unsaved === 0;
+  }
+
+  async _underWay() {
+    await Promise.all([...this._slots.values()].map(({ busy }) => busy));
+  }
+
+  _canGoOn() {
+    return this._trouble === null && [...this._slots.values()].some((slot) => this._isToSend(slot));
   }
 
   /** The page goes away: the browser delivers these on its own; the journal has them too. */
   sendOnLeaving() {
     for (const [frame, slot] of this._slots) {
-      if (slot.edits && !slot.busy) this._send(frame, { keepalive: true });
+      if (!slot.busy) this._send(frame, { keepalive: true });
     }
   }
 
@@ -136,23 +168,14 @@ export class Saver extends Emitter {
       if (!slot) continue;
       slot.edits += 1;
       slot.refused = null;
-      this._keep(frame, slot, true);
+      this._keep(frame, slot);
     }
     this._schedule(DELAY);
     this.emit("status");
   }
 
-  /** @param {boolean} patient one edit of many; what was sent or asked is written at once */
-  _keep(frame, slot, patient = false) {
-    const record = () => ({
-      base: plain(slot.base),
-      ours: plain(this._store.frame(frame)),
-      sending: slot.sending && { saveId: slot.sending.saveId, body: slot.sending.body },
-      question: slot.question, // a crash must not answer it
-      edits: slot.edits,
-      at: Date.now(),
-    });
-    this._journal.write(frame, record, patient);
+  _keep(frame, slot) {
+    this._journal.write(frame, () => recordOf(slot, this._store.frame(frame), this._activity.waiting(frame)));
   }
 
   /** The first edit starts the clock; later ones don't push it back. */
@@ -161,26 +184,46 @@ export class Saver extends Emitter {
     clearTimeout(this._timer);
     this._timer = setTimeout(() => {
       this._timer = null;
-      for (const [frame, slot] of this._slots) if (slot.edits) this._send(frame);
+      for (const frame of this._slots.keys()) this._send(frame);
     }, delay);
   }
 
-  async _send(frame, options = {}) {
+  _isToSend(slot) {
+    return slot.edits > 0 && !slot.question && !slot.refused && this._readOnly === null;
+  }
+
+  /** @returns {Promise<void>} when it has been answered; never rejects */
+  _send(frame, options = {}) {
     const slot = this._slots.get(frame);
-    if (slot.busy || slot.question || slot.refused || this._readOnly !== null || slot.edits === 0) return;
+    if (slot.busy) return slot.busy;
+    if (!this._isToSend(slot)) return Promise.resolve();
     slot.sending ??= this._prepare(frame, slot);
-    if (!slot.sending) return this.emit("status"); // undone before it was ever sent: all is saved again
-    slot.busy = true;
+    if (!slot.sending) {
+      this.emit("status"); // undone before it was ever sent: all is saved again
+      return Promise.resolve();
+    }
     this._keep(frame, slot);
+    slot.busy = this._deliver(frame, slot, options);
+    return slot.busy;
+  }
+
+  async _deliver(frame, slot, options) {
+    const retry = this._retry; // of all that are sent together, so that they make one step of waiting longer
+    const { answer, error } = await this._asked(frame, slot.sending.body, options);
+    slot.busy = null;
+    if (error) this._fail(frame, slot, error, retry);
+    else this._acknowledge(frame, slot, answer);
+    if (slot.edits && !this._trouble) this._schedule(DELAY);
+    this.emit("status");
+  }
+
+  async _asked(frame, body, options) {
     try {
-      const answer = await this._api.saveFrame(frame, slot.sending.body, options);
-      this._acknowledge(frame, slot, answer);
+      const answer = await this._api.saveFrame(frame, body, options);
+      if (Number.isInteger(answer?.revision)) return { answer };
+      return { error: new ApiError(200, "unreadable", "the answer is no receipt") }; // somebody else's, on the way
     } catch (error) {
-      this._fail(frame, slot, error);
-    } finally {
-      slot.busy = false;
-      if (slot.edits && !this._trouble) this._schedule(DELAY);
-      this.emit("status");
+      return { error };
     }
   }
 
@@ -220,24 +263,28 @@ export class Saver extends Emitter {
     this.emit("status");
   }
 
-  _fail(frame, slot, error) {
-    if (error instanceof ApiError && error.code === "stale") return this._merge(frame, slot, error.details.current);
-    if (error instanceof ApiError && error.code === "read_only") return this.makeReadOnly(error.message);
-    if (error instanceof ApiError && error.status === 400) return this._refuse(slot, error);
-    if (error instanceof ApiError && error.status === 404) return this._refuse(slot, error);
-    if (error instanceof ApiError && error.signedOut) this._trouble = "signed_out";
-    else if (error instanceof NetworkError) this._trouble = "offline";
-    else if (error instanceof ApiError) this._trouble = "server";
-    else throw error;
-    this._retry = Math.min(SLOWEST_RETRY, Math.max(1000, this._retry * 2));
+  _fail(frame, slot, error, retry) {
+    const known = error instanceof ApiError && error.code !== "unknown";
+    if (known && error.code === "stale") return this._merge(frame, slot, error.details.current);
+    if (known && error.code === "read_only") return this.makeReadOnly(error.message);
+    if (known && REFUSALS.includes(error.status)) return this._refuse(frame, slot, error);
+    if (known && error.code === "save_id_used") this._takeBack(frame, slot); // the next try has an id of its own
+    this._trouble = troubleOf(error);
+    this._retry = Math.min(SLOWEST_RETRY, Math.max(FIRST_RETRY, retry * 2));
     this._schedule(this._retry);
+  }
+
+  /** What was sent was not written, for certain. */
+  _takeBack(frame, slot) {
+    if (slot.sending) this._activity.giveBack(frame, slot.sending.body.seconds);
+    slot.sending = null;
   }
 
   /** The server has a newer state: both sides' people come together, or the annotator is asked. */
   _merge(frame, slot, current) {
     const theirs = baseOf(current);
     const { base } = slot;
-    slot.sending = null;
+    this._takeBack(frame, slot);
     slot.base = theirs;
     this._trouble = null;
     this._bringTogether(frame, slot, base, theirs, "server", { author: current.author, savedAt: current.saved_at });
@@ -278,35 +325,18 @@ export class Saver extends Emitter {
     return this._store.person(person, frame) !== undefined && (slot.added.has(person) || !slot.base.people.has(person));
   }
 
-  _refuse(slot, error) {
+  _refuse(frame, slot, error) {
     const places = Array.isArray(error.details) ? error.details.map(({ place, reason }) => `${place}: ${reason}`) : [];
     slot.refused = places.length ? places.join("; ") : error.message;
-    slot.sending = null;
+    this._takeBack(frame, slot);
+    this._keep(frame, slot);
   }
 }
 
-function baseOf(state) {
-  return { revision: state.revision, ...stateOf(state) };
-}
-
-/** From JSON: annotations as a map. */
-function stateOf({ annotations, done, nobody }) {
-  return { people: byPerson(annotations), done: Boolean(done), nobody: Boolean(nobody) };
-}
-
-/** To JSON. */
-function plain({ people, done, nobody }) {
-  return { annotations: asList(people), done, nobody };
-}
-
-function isSame(one, other) {
-  return samePeople(one.people, other.people) && one.done === other.done && one.nobody === other.nobody;
-}
-
-/** A question as it was before a reload; the database gives plain values back. */
-function revived(question) {
-  if (!question) return null;
-  const frozen = (one) => (one ? annotation(one) : undefined);
-  const conflicts = question.conflicts.map((one) => ({ ...one, ours: frozen(one.ours), theirs: frozen(one.theirs) }));
-  return { ...question, conflicts };
+/** @returns {"signed_out"|"offline"|"server"} */
+function troubleOf(error) {
+  if (error instanceof NetworkError) return "offline";
+  if (error instanceof ApiError) return error.signedOut ? "signed_out" : "server";
+  console.error(error); // nobody foresaw it: tried again, less and less often, like everything else
+  return "server";
 }

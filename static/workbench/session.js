@@ -18,7 +18,7 @@ export async function openSession({ api, scene: answer, first, images }) {
   const scene = new Scene(answer);
   const store = new Store(scene.frames.map(({ number }) => number), scene.nextPerson);
   const loader = new Loader({ api, scene, store });
-  const [states, journal] = await Promise.all([loader.start(first), Journal.open(layerKey(scene))]);
+  const [states, journal] = await Promise.all([loader.start(first), Journal.open(...layerNames(scene))]);
   const activity = new Activity();
   const saver = new Saver({ api, store, journal, activity, practice: scene.mode === "tutorial" });
   const history = new History(store, (patch) => withRefill(store, scene, patch));
@@ -26,24 +26,30 @@ export async function openSession({ api, scene: answer, first, images }) {
   if (!scene.editable) saver.makeReadOnly(scene.readOnlyReason);
   saver.on("renumber", ({ from, to, frames }) => history.renumber(from, to, frames));
   journal.shareNumbers(store);
-  await recover(journal, saver, loader, history);
+  await recover({ scene, journal, saver, loader, history, store });
   store.open(first);
   return { api, scene, store, history, saver, loader, journal, images, activity };
 }
 
-/** Under which name edits are kept; the tutorial keeps none. */
-function layerKey({ mode, layer }) {
-  if (mode === "tutorial") return null;
+/**
+ * Under which name edits are kept, and under which earlier versions kept them; the tutorial keeps none.
+ * Numbers of layers begin anew in every database, so the server gives a key that no other layer has.
+ */
+function layerNames({ mode, layer }) {
+  if (mode === "tutorial") return [null];
   // Parts of a long layer know nothing of each other's frames.
-  return layer.first == null ? `${mode} ${layer.id}` : `${mode} ${layer.id} from ${layer.first}`;
+  const part = layer.first == null ? "" : ` from ${layer.first}`;
+  return [`${mode} ${layer.key}${part}`, `${mode} ${layer.id}${part}`];
 }
 
 /** Edits the server never acknowledged, and the undo steps, as they were before a reload. */
-async function recover(journal, saver, loader, history) {
+async function recover({ scene, journal, saver, loader, history, store }) {
   for (const record of await journal.recover()) {
+    if (!store.frame(record.frame)) continue; // it stays where it is: the frame may come back
     await loader.load(record.frame, false);
+    if (!isOfThisLayer(record, scene.layer, saver.revision(record.frame))) continue;
+    journal.takeOver(record);
     saver.adopt(record);
-    await journal.drop(record);
   }
   const stored = await journal.takeHistory();
   const keep = () => journal.writeHistory(() => history.dump());
@@ -52,4 +58,9 @@ async function recover(journal, saver, loader, history) {
     keep(); // under this tab's name from now on
   }
   history.on("change", keep);
+}
+
+/** A layer is older than its edits, and its frames have at least the revision that the edits started from. */
+function isOfThisLayer({ formerly, at, base }, layer, revision) {
+  return !formerly || (at >= Date.parse(layer.created_at) && (base.revision ?? 0) <= revision);
 }

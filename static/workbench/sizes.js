@@ -1,5 +1,6 @@
 import { changed } from "./annotation.js";
 import { patch } from "./commands.js";
+import { failureWords } from "./failure_words.js";
 import { gettext } from "./messages.js";
 
 const STEP = { height: 0.02, radius: 0.01 }; // metres
@@ -65,7 +66,7 @@ export class Sizes {
       for (let number = missing(); number !== undefined; number = missing()) await this.walk.loader.load(number, false);
       return true;
     } catch (error) {
-      this.notices.say(gettext("The later frames did not arrive: {error}", { error: error.message }));
+      this.notices.say(gettext("The later frames did not arrive: {error}", { error: failureWords(error) }));
       return false;
     } finally {
       this._loading = false;

@@ -86,6 +86,7 @@ export class TimeActions {
     const task = nextTask(this.store, this.walk.judging, this._asked);
     if (!task) return this.notices.say(gettext("Nothing is left to do here"));
     if (task.number !== this.store.current) await this.walk.jump(task.number);
+    if (task.number !== this.store.current) return; // it could not be loaded
     if (task.person !== null) this.store.select(task.person);
     if (task.kind === "single") {
       this._asked.add(task.person);

@@ -1,4 +1,4 @@
-import { NetworkError } from "./api.js";
+import { loadMissing } from "./load_missing.js";
 import { gettext } from "./messages.js";
 
 const STEPS = {
@@ -37,11 +37,7 @@ export class UndoActions {
   async _loadThenStep(missing, direction) {
     this._loading = true;
     try {
-      await this.loader.loadAll(missing);
-      this._step(direction);
-    } catch (error) {
-      if (!(error instanceof NetworkError)) throw error;
-      this.notices.say(gettext("Not possible now: the other frames could not be loaded"));
+      if (await loadMissing(this, missing)) this._step(direction);
     } finally {
       this._loading = false;
     }

@@ -2,6 +2,7 @@ import { carriedOf } from "./annotation.js";
 import { isGuess, predictPeople } from "./carry.js";
 import * as commands from "./commands.js";
 import { ask } from "./dialogs.js";
+import { failureWords } from "./failure_words.js";
 import { between, isFilled } from "./keyframes.js";
 import { same } from "./merge.js";
 import { gettext, ngettext } from "./messages.js";
@@ -59,11 +60,20 @@ export class Walk {
     return this._alone(() => this.open(number));
   }
 
-  /** Only look: nobody is carried over, nothing is said to be done. The newest wish wins. */
+  /**
+   * Only look: nobody is carried over, nothing is said to be done. The newest wish wins.
+   * @returns {Promise<boolean>} false: said that the frame could not be loaded
+   */
   async look(number) {
     this._looking = number;
-    await this.loader.load(number, false);
+    try {
+      await this.loader.load(number, false);
+    } catch (error) {
+      if (this._looking === number) this._sayNotLoaded(error);
+      return this._looking !== number;
+    }
     if (this._looking === number) this._show(number);
+    return true;
   }
 
   /** While playing, more of what comes is fetched. */
@@ -206,8 +216,14 @@ export class Walk {
     this._busy = true;
     try {
       await work();
+    } catch (error) {
+      this._sayNotLoaded(error);
     } finally {
       this._busy = false;
     }
+  }
+
+  _sayNotLoaded(error) {
+    this.notices.say(gettext("The frame could not be loaded: {reason}. Please try again", { reason: failureWords(error) }));
   }
 }

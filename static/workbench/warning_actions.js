@@ -25,6 +25,7 @@ export class WarningActions {
   async go(warning) {
     this._last = warning;
     if (warning.frame !== this.store.current) await this.walk.look(warning.frame);
+    if (warning.frame !== this.store.current) return; // it could not be loaded, or one went on meanwhile
     this.store.select(warning.persons.findLast((person) => this.store.person(person)) ?? null);
     this.notices.say(warningWords(warning));
   }

@@ -1,8 +1,10 @@
 from __future__ import annotations
 
+from datetime import timedelta
+
 import pytest
 
-from gtm_hit.models import Annotation, Assignment, Save
+from gtm_hit.models import Annotation, Assignment, Layer, Save
 from tests.api.conftest import Caller, body
 from tests.work_scene import finish, row
 
@@ -26,6 +28,18 @@ def test_the_scene_describes_what_the_workbench_draws(alice: Caller, assignment:
     assert (scene["editable"], scene["read_only_reason"]) == (True, "")
     assert scene["assignment"]["batch"] == "square batch 1"
     assert scene["next_person"] == 1
+
+
+def test_a_layer_has_a_key_that_stays_and_that_no_layer_of_another_database_has(
+    alice: Caller, assignment: Assignment
+) -> None:
+    keys = {alice.get(SCENE).json()["layer"]["key"] for _ in range(2)}
+    Layer.objects.filter(pk=assignment.layer.pk).update(
+        created_at=assignment.layer.created_at + timedelta(seconds=1)
+    )
+    other = alice.get(SCENE).json()["layer"]["key"]
+    assert len(keys) == 1
+    assert other not in keys
 
 
 def test_the_scene_brings_accepted_people_from_beyond_the_batchs_border(bob: Caller, alice: Caller) -> None:
