@@ -25,6 +25,11 @@ app.conf.beat_schedule = {
         "schedule": 3600.0,
         "options": {"expires": 3599},
     },
+    "remove-unused-pictures": {
+        "task": "gtm_hit.tasks.remove_unused_pictures",
+        "schedule": 3600.0,
+        "options": {"expires": 3599},
+    },
     "expire-leases": {
         "task": "gtm_hit.tasks.expire_leases",
         "schedule": 60.0,
