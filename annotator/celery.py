@@ -3,12 +3,16 @@ from __future__ import annotations
 import os
 
 from celery import Celery
+from celery.signals import worker_ready
 from kombu.transport import TRANSPORT_ALIASES
+
+from annotator import clock
 
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "annotator.settings")
 TRANSPORT_ALIASES["filesystem"] = "annotator.folder_broker:Transport"
 
 app = Celery("annotator")
+worker_ready.connect(clock.watch)
 app.set_default()  # "current" is per thread, and web servers have many
 app.config_from_object("django.conf:settings", namespace="CELERY")
 app.autodiscover_tasks()
