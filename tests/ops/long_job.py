@@ -1,6 +1,7 @@
 """A job that says nothing for as long as one likes, and a worker whose patience is a quarter of the usual.
 
-`celery -A tests.ops.long_job worker` does it; `python -m tests.ops.long_job computing|writing SECONDS` starts one.
+`celery -A tests.ops.long_job worker` does it,
+`python -m tests.ops.long_job computing|writing SECONDS` starts it.
 """
 
 from __future__ import annotations
