@@ -109,8 +109,10 @@ def test_a_stopped_worker_that_wakes_does_nothing_more_to_a_job_it_lost(site: Si
 
 def test_a_job_is_done_again_though_the_clock_was_killed_before_its_worker(tmp_path: Path) -> None:
     site = migrated(Site(tmp_path))
-    job = start(site, "computing", 3)
     with impatient(site, processes=1) as worker:
+        # What a worker does at its start is over: only the clock can find the job.
+        site.wait_until(lambda: bool(re.search("expire_exports.* succeeded", site.log())))
+        job = start(site, "computing", 3)
         wait_for_start(site, job)
         before = children(worker.pid)
         assert len(before) == 2, before  # the clock and the pool's process
