@@ -3,12 +3,16 @@ from __future__ import annotations
 import os
 
 from celery import Celery
+from celery.signals import worker_ready
 from kombu.transport import TRANSPORT_ALIASES
+
+from annotator import clock
 
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "annotator.settings")
 TRANSPORT_ALIASES["filesystem"] = "annotator.folder_broker:Transport"
 
 app = Celery("annotator")
+worker_ready.connect(clock.watch)
 app.set_default()  # "current" is per thread, and web servers have many
 app.config_from_object("django.conf:settings", namespace="CELERY")
 app.autodiscover_tasks()
@@ -22,6 +26,11 @@ app.conf.beat_schedule = {
     },
     "expire-exports": {
         "task": "gtm_hit.tasks.expire_exports",
+        "schedule": 3600.0,
+        "options": {"expires": 3599},
+    },
+    "remove-unused-pictures": {
+        "task": "gtm_hit.tasks.remove_unused_pictures",
         "schedule": 3600.0,
         "options": {"expires": 3599},
     },

@@ -9,7 +9,16 @@ from celery.signals import worker_ready
 from django.utils import timezone
 
 from gtm_hit.models import Job
-from gtm_hit.ops import assignments, export_expiry, exporting, import_jobs, jobs, releases, uploads
+from gtm_hit.ops import (
+    assignments,
+    export_expiry,
+    exporting,
+    import_jobs,
+    jobs,
+    picture_cleanup,
+    releases,
+    uploads,
+)
 from gtm_hit.ops.annotation_import import job as annotation_job
 from gtm_hit.ops.calibration import job as calibration_job
 
@@ -41,6 +50,11 @@ def expire_exports() -> None:
 
 
 @shared_task
+def remove_unused_pictures() -> None:
+    picture_cleanup.remove_unused_pictures(timezone.now())
+
+
+@shared_task
 def expire_leases() -> None:
     assignments.expire_leases(timezone.now())
 
@@ -50,3 +64,4 @@ def look_for_lost_jobs(**kwargs: Any) -> None:
     """A worker that comes back looks at once for what was lost meanwhile."""
     requeue_lost_jobs.delay()
     expire_exports.delay()  # a machine that is on for an hour at a time has to come to it, too
+    remove_unused_pictures.delay()

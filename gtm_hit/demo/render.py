@@ -22,8 +22,7 @@ from gtm_hit.demo.people import Cast, moment
 from gtm_hit.demo.scene import Scene
 from gtm_hit.demo.view import View, photograph
 from gtm_hit.geometry.camera import Camera
-
-Progress = Callable[[int, int], None]
+from gtm_hit.geometry.steps import Steps
 
 JPEG_QUALITY = 92
 WORKERS = 2
@@ -66,7 +65,7 @@ def render_scene(
     scene: Scene,
     cameras: Sequence[Camera],
     folder: Path,
-    progress: Progress | None = None,
+    progress: Steps | None = None,
     workers: int = WORKERS,
 ) -> list[Truth]:
     """Write `Image_subsets/C<index + 1>/<number>.jpg` for all cameras and frames; returns the truth.

@@ -19,7 +19,6 @@ this order. MultiviewX is published without a header. Reading: `pom_reader`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -29,8 +28,7 @@ import numpy as np
 from gtm_hit.formats.files import replacing
 from gtm_hit.geometry.cylinder import Cylinder
 from gtm_hit.geometry.grid import Grid
-
-Progress = Callable[[int, int], None]
+from gtm_hit.geometry.steps import Steps
 
 BLOCK_LINES = 65_536
 
@@ -57,7 +55,7 @@ class Rectangles(Protocol):
 
 
 def write_pom(
-    path: Path, header: PomHeader, table: Rectangles, progress: Progress | None = None, headed: bool = True
+    path: Path, header: PomHeader, table: Rectangles, progress: Steps | None = None, headed: bool = True
 ) -> None:
     """Writes one line per camera and position; `progress` is told positions done and positions in all.
 

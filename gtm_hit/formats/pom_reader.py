@@ -12,10 +12,11 @@ from typing import BinaryIO
 import numpy as np
 
 from gtm_hit.formats.files import check_source, reason_of
-from gtm_hit.formats.pom import PomHeader, Progress
+from gtm_hit.formats.pom import PomHeader
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList, shown
 from gtm_hit.geometry.cylinder import Cylinder
 from gtm_hit.geometry.grid import Grid
+from gtm_hit.geometry.steps import Steps
 
 MOST_ENTRIES = 50_000_000
 BLOCK_BYTES = 1 << 20
@@ -71,7 +72,7 @@ class PomFile:
 
 
 def read_pom(
-    path: Path, grid: Grid | None = None, cameras: int | None = None, progress: Progress | None = None
+    path: Path, grid: Grid | None = None, cameras: int | None = None, progress: Steps | None = None
 ) -> PomFile:
     """Reads and checks a whole table; `progress` is told bytes done and bytes in all.
 

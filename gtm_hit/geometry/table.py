@@ -12,7 +12,7 @@ import json
 import math
 import mmap
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import asdict
 from pathlib import Path
@@ -25,6 +25,7 @@ from gtm_hit.geometry import lens
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import BLOCK, Cylinder, FootRule, fill_block, is_visible
 from gtm_hit.geometry.grid import Grid
+from gtm_hit.geometry.steps import Steps
 
 VERSION = 1  # goes into the digest: count up when the rule or the file changes
 MAGIC = b"GTM rectangles\n"
@@ -33,7 +34,6 @@ BOX_BYTES = 8
 TASKS_PER_CAMERA = 8
 
 Boxes = NDArray[np.int16]
-Progress = Callable[[int, int], None]  # parts done, parts in all
 
 
 class TableError(ValueError):
@@ -72,7 +72,7 @@ class RectangleTable:
         grid: Grid,
         cylinder: Cylinder,
         rule: FootRule,
-        progress: Progress | None = None,
+        progress: Steps | None = None,
     ) -> RectangleTable:
         """Open the table of these numbers, computing it first unless a sound file is there already.
 
@@ -153,7 +153,7 @@ def _write_table(
     grid: Grid,
     cylinder: Cylinder,
     rule: FootRule,
-    progress: Progress | None,
+    progress: Steps | None,
 ) -> None:
     size = HEADER_BYTES + len(cameras) * grid.count * BOX_BYTES
     # Reserve the space: a full disk must be an error here, not a bus error in the middle of the mapping.
@@ -172,7 +172,7 @@ def _compute(
     grid: Grid,
     cylinder: Cylinder,
     rule: FootRule,
-    progress: Progress | None,
+    progress: Steps | None,
 ) -> None:
     """Fill boxes (cameras, rows, columns, 4), with a thread per core: numpy lets go of the lock."""
     columns = np.arange(grid.columns)[None, :]

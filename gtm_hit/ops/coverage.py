@@ -12,7 +12,8 @@ import numpy as np
 from django.conf import settings
 from PIL import Image as Picture
 
-from gtm_hit.geometry.table import Progress, RectangleTable
+from gtm_hit.geometry.steps import Steps
+from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Dataset
 
 # From "one camera" to "all of them": lighter to darker, also without seeing colours.
@@ -44,7 +45,7 @@ class Coverage:
         return sum(number * count for number, count in enumerate(self.counts)) / sum(self.counts)
 
 
-def table(dataset: Dataset, progress: Progress | None = None) -> RectangleTable:
+def table(dataset: Dataset, progress: Steps | None = None) -> RectangleTable:
     """The dataset's rectangle table; built when this machine does not have it yet."""
     return RectangleTable.build(
         settings.TABLES_ROOT,

@@ -21,8 +21,9 @@ from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.models import Dataset, Layer
 from gtm_hit.ops.batches import make_batches
-from gtm_hit.ops.importing.dataset import Progress, import_dataset, no_progress
+from gtm_hit.ops.importing.dataset import import_dataset
 from gtm_hit.ops.importing.options import PRESETS, ImportOptions, SceneValues
+from gtm_hit.ops.jobs_progress import Progress, no_progress
 
 CAMERAS = settings.BASE_DIR / "fixtures" / "wildtrack_cameras.json"
 TRUTH = "truth"

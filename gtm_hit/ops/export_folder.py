@@ -17,8 +17,9 @@ from gtm_hit.ops.coverage import table
 from gtm_hit.ops.export_calibrations import UNITS
 from gtm_hit.ops.export_files import ExportFiles
 from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, FORMATS
-from gtm_hit.ops.export_formats.target import Report, Target, Writer
+from gtm_hit.ops.export_formats.target import Target, Writer
 from gtm_hit.ops.export_frames import Chunk, FrameReader
+from gtm_hit.ops.jobs_progress import Progress
 
 TABLE = "computing the rectangle table"
 FRAMES = "writing frames"
@@ -32,7 +33,7 @@ class ExportFolder:
         folder: Path,
         archive: StableZip,
         layer: Layer,
-        report: Report,
+        report: Progress,
         formats: Collection[str] = DEFAULT_FORMATS,
         more: Sequence[Callable[[Target], Writer]] = (),
     ) -> None:

@@ -8,8 +8,8 @@ from __future__ import annotations
 import hashlib
 import re
 import shutil
-from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,9 +24,9 @@ from gtm_hit.models import Job, Layer
 from gtm_hit.ops import jobs
 from gtm_hit.ops.export_folder import FRAMES, TABLE, ExportFolder
 from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, chosen
-from gtm_hit.ops.export_formats.target import RECTANGLES, Report
+from gtm_hit.ops.export_formats.target import RECTANGLES
+from gtm_hit.ops.jobs_progress import Progress, percents
 
-# Percents of the whole at which each phase begins and ends.
 SHARES = {TABLE: (0, 5), FRAMES: (5, 85), RECTANGLES: (85, 100)}
 PARTIAL = re.compile(r".+\.partial-(?P<job>\d+)-(?P<attempt>\d+)")
 
@@ -67,8 +67,8 @@ def run(mine: jobs.Run) -> dict[str, Any]:
         layer,
         folder,
         partial,
-        shared_report(mine, SHARES),
-        lambda: mine.confirm(100, 100),
+        percents(mine, SHARES),
+        lambda: mine.holding(100, 100),
         mine.job.parameters.get("formats", DEFAULT_FORMATS),
     )
     return {
@@ -79,29 +79,18 @@ def run(mine: jobs.Run) -> dict[str, Any]:
     }
 
 
-def shared_report(mine: jobs.Run, shares: Mapping[str, tuple[int, int]]) -> Report:
-    """Tells the job's row phases and steps as percents of the whole."""
-
-    def report(phase: str, done: int, total: int) -> None:
-        start, end = shares[phase]
-        steps = start + (end - start) * done // max(total, 1)
-        mine.report(steps, 100, f"{phase}: {done} of {total}")
-
-    return report
-
-
 def export_layer(
     layer: Layer,
     folder: Path,
     partial: Path,
-    report: Report,
-    confirm: Callable[[], None] | None = None,
+    report: Progress,
+    holding: Callable[[], AbstractContextManager[None]] = nullcontext,
     formats: Collection[str] = DEFAULT_FORMATS,
 ) -> Manifest:
     """Write a layer to `folder` and to the zip beside it, replacing an earlier export there.
 
     `partial` is the folder for unfinished work, on the same disk; it is gone afterwards, whatever happens.
-    `confirm` is asked once before the first rename; what it raises leaves everything as it was.
+    The renames are made while `holding`; what it raises before leaves everything as it was.
     """
     with empty_folder(partial):
         content, archive = partial / "content", partial / "content.zip"
@@ -110,10 +99,9 @@ def export_layer(
             manifest = ExportFolder(content, packed, layer, report, chosen(formats)).write()
         if not manifest.counts["frames"]:
             raise ExportError(f"Nothing has been saved in the layer {layer.name} yet.")
-        if confirm:
-            confirm()
-        replace(content, folder, partial / "before")
-        archive.replace(archive_of(folder))
+        with holding():
+            replace(content, folder, partial / "before")
+            archive.replace(archive_of(folder))
     return manifest
 
 

@@ -47,14 +47,13 @@ class Undistort(Protocol):
 
 @dataclass(frozen=True)
 class Derivatives:
-    """The stored files of one picture. `written`: names of those that were not in the storage before."""
+    """The stored files of one picture."""
 
     source_digest: str
     light_digest: str
     full_digest: str
     light_bytes: int
     full_bytes: int
-    written: tuple[str, ...]
 
 
 def storage_name(digest: str) -> str:
@@ -118,32 +117,31 @@ def derive(data: bytes, undistort: Undistort | None = None) -> tuple[bytes, byte
     return _jpeg(image, LIGHT_QUALITY, icc), full
 
 
-def store(data: bytes) -> tuple[str, bool]:
-    """The digest the bytes are stored under, and whether they were new. Never seen half-written."""
+def is_stored(digest: str) -> bool:
+    return default_storage.exists(storage_name(digest))
+
+
+def store(data: bytes) -> str:
+    """The digest the bytes are stored under. Never seen half-written."""
     digest = digest_of(data)
     name = storage_name(digest)
     there = default_storage.exists(name)
     if there and default_storage.size(name) == len(data):
-        return digest, False
+        return digest
     if isinstance(default_storage, FileSystemStorage):
         write_bytes(Path(default_storage.path(name)), data)
-        return digest, True
+        return digest
     # An object store writes atomically by itself, but gives a taken name a suffix.
     if there:
         default_storage.delete(name)
     default_storage.save(name, ContentFile(data))
-    return digest, True
+    return digest
 
 
 def make_derivatives(data: bytes, undistort: Undistort | None = None) -> Derivatives:
     """Derive and store. Raises ImageError as `decode`; then nothing is stored."""
     light, full = derive(data, undistort)
-    light_digest, light_new = store(light)
-    full_digest, full_new = store(full)
-    written = [storage_name(light_digest)] * light_new + [storage_name(full_digest)] * full_new
-    return Derivatives(
-        digest_of(data), light_digest, full_digest, len(light), len(full), tuple(dict.fromkeys(written))
-    )
+    return Derivatives(digest_of(data), store(light), store(full), len(light), len(full))
 
 
 def remapper(coarse: NDArray[Any], fine: NDArray[Any]) -> Undistort:

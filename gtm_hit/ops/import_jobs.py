@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from django.conf import settings
@@ -12,15 +13,13 @@ from django.contrib.auth.models import User
 from gtm_hit.formats.problems import FormatError, Problem
 from gtm_hit.models import Dataset, Job
 from gtm_hit.ops import jobs, uploads
-from gtm_hit.ops.importing.dataset import ImportFailed, import_dataset
+from gtm_hit.ops.importing.dataset import ImportFailed, ImportReport, import_dataset
 from gtm_hit.ops.importing.options import ImportOptions, SceneValues
+from gtm_hit.ops.jobs_progress import UNPACKING, WRITING, percents, steps
 from gtm_hit.ops.videos.importing import import_videos
 from gtm_hit.ops.videos.options import VideoOptions, VideoSource
 from gtm_hit.ops.videos.plan import USUAL
 
-UNPACKING = "unpacking"
-WRITING = "writing to the database"
-# Percents of the whole at which each phase begins and ends.
 SHARES = {
     UNPACKING: (0, 20),
     "reading image headers": (20, 23),
@@ -64,44 +63,48 @@ def video_values(slug: str, preset: str | None, given: SceneValues) -> SceneValu
 
 
 def run_import(mine: jobs.Run) -> dict[str, Any]:
-    source = _source(mine)
+    """The operation of an import job. A worker that takes it up again finds what it has written."""
+    if not mine.job.result:
+        _import(mine, _source(mine))
+    uploads.let_go(mine.job.parameters["source"], mine.job)
+    return mine.job.result
 
-    def report(phase: str, done: int, total: int) -> None:
-        start, end = SHARES[phase]
-        steps = start + (end - start) * done // max(total, 1)
-        # What is written cannot be taken back by pressing Cancel.
-        tell = mine.confirm if (phase, done) == (WRITING, 0) else mine.report
-        tell(steps, 100, f"{phase}: {done} of {total}")
+
+def _import(mine: jobs.Run, source: uploads.Source) -> None:
+    progress = percents(mine, SHARES)
+
+    def remember(found: ImportReport) -> None:
+        # In the import's own transaction: there is never one its job does not know of.
+        mine.keep(dataset=found.dataset, result=_result(found))
 
     def work() -> dict[str, Any]:
-        with uploads.unpacked(source, mine.job, lambda *steps: report(UNPACKING, *steps)) as folder:
-            found = import_dataset(ImportOptions(folder=folder, **mine.job.parameters["options"]), report)
-        _belongs_to(mine.job, found.dataset)
-        return {
-            "dataset": found.dataset.slug,
-            "layer": found.layer.name if found.layer else "",
-            "frames": found.frames_added,
-            "images": found.images_added,
-            "people": found.people_added,
-            "notes": found.notes,
-        }
+        with uploads.unpacked(source, mine.job, partial(progress, UNPACKING)) as folder:
+            options = ImportOptions(folder=folder, **mine.job.parameters["options"])
+            return _result(import_dataset(options, progress, remember))
 
-    result = _or_problems(work, "nothing was imported")
-    if source.was_uploaded:
-        source.path.unlink(missing_ok=True)
-    return result
+    mine.job.result = _or_problems(work, "nothing was imported")
+
+
+def _result(found: ImportReport) -> dict[str, Any]:
+    return {
+        "dataset": found.dataset.slug,
+        "layer": found.layer.name if found.layer else "",
+        "frames": found.frames_added,
+        "images": found.images_added,
+        "people": found.people_added,
+        "notes": found.notes,
+    }
 
 
 def run_videos(mine: jobs.Run) -> dict[str, Any]:
     source, parameters = _source(mine), mine.job.parameters
 
-    def report(phase: str, done: int, total: int) -> None:
-        mine.report(done, total, f"{phase}: {done} of {total}")
+    def remember(part: ImportReport) -> None:
+        # In the part's own transaction: whoever lost the job adds nothing.
+        mine.keep(dataset=part.dataset)
 
     def work() -> dict[str, Any]:
-        found = import_videos(video_options(source, parameters), report)
-        if found.dataset is not None:
-            _belongs_to(mine.job, found.dataset)
+        found = import_videos(video_options(source, parameters), steps(mine), remember)
         return {
             "dataset": parameters["options"]["slug"],
             "frames": found.frames_added,
@@ -152,7 +155,3 @@ def _source(mine: jobs.Run) -> uploads.Source:
 
 def _dataset(options: dict[str, Any]) -> Dataset | None:
     return Dataset.objects.filter(slug=options["slug"]).first()
-
-
-def _belongs_to(job: Job, dataset: Dataset) -> None:
-    Job.objects.filter(pk=job.pk).update(dataset=dataset)

@@ -2,14 +2,15 @@
 
 The row is the truth. A broker's message only wakes a worker; it may be lost or come twice. A worker owns a
 running row as long as `attempts` is the number it claimed with: whoever lost the row can neither report nor
-finish it.
+finish it, and what it writes in one transaction with `Run.keep` is taken back.
 """
 
 from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from functools import partial
@@ -22,11 +23,13 @@ from django.db.models import F, Q
 from django.utils import timezone
 
 from gtm_hit.models import Dataset, Job
+from gtm_hit.ops import jobs_lease
 
 TASK = "gtm_hit.tasks.run_job"
 LOST_AFTER = timedelta(seconds=20)
+STOPPED_AFTER = timedelta(minutes=2)  # for a process that is there but does not move
 MESSAGE_LIVES = timedelta(minutes=10)
-MOST_ATTEMPTS = 5
+MOST_ATTEMPTS = 3  # what killed three workers would kill the fourth
 SECONDS_BETWEEN_REPORTS = 0.5
 
 logger = logging.getLogger(__name__)
@@ -67,8 +70,27 @@ class Run:
         if not mine.update(done=done, total=total, message=message, heartbeat_at=timezone.now()):
             if self._mine().exists():
                 raise JobCancelled(f"job {self.job.pk} was cancelled")
-            raise JobLost(f"job {self.job.pk} is no longer attempt {self.attempt}")
+            raise self._lost()
         self._reported_at = self.clock()
+
+    def keep(self, **values: Any) -> None:
+        """Write onto the row, or raise JobLost.
+
+        Inside the transaction of the work itself: work and row change together, or not at all.
+        """
+        if not self._mine().update(**values):
+            raise self._lost()
+
+    @contextmanager
+    def holding(self, done: int, total: int) -> Iterator[None]:
+        """`confirm`, and nobody can take the job away until the block ends; for steps of an instant."""
+        with transaction.atomic():
+            self.confirm(done, total)
+            yield
+
+    def beat(self) -> None:
+        """A sign of life without progress."""
+        self._mine().update(heartbeat_at=timezone.now())
 
     def finish(self, result: dict[str, Any]) -> None:
         self._end(Job.State.DONE, message="", result=result, done=F("total"))
@@ -84,8 +106,10 @@ class Run:
 
     def _end(self, state: str, **values: Any) -> None:
         now = timezone.now()
-        if not self._mine().update(state=state, finished_at=now, heartbeat_at=now, **values):
-            raise JobLost(f"job {self.job.pk} is no longer attempt {self.attempt}")
+        self.keep(state=state, finished_at=now, heartbeat_at=now, **values)
+
+    def _lost(self) -> JobLost:
+        return JobLost(f"job {self.job.pk} is no longer attempt {self.attempt}")
 
 
 Operation = Callable[[Run], dict[str, Any]]
@@ -141,7 +165,8 @@ def run(job_id: int, operations: dict[str, Operation]) -> None:
     if mine is None:
         return
     try:
-        _run_to_its_end(mine, operations)
+        with jobs_lease.lease(job_id, mine.attempt, mine.beat):
+            _run_to_its_end(mine, operations)
     except JobLost as error:
         logger.warning("%s", error)
 
@@ -176,34 +201,59 @@ def retry(job: Job, user: User | None = None) -> Job:
 
 
 def requeue_lost(now: datetime) -> list[int]:
-    """Give jobs back whose worker fell silent, and wake a worker for those nobody came for.
+    """Give jobs back whose worker is gone, and wake a worker for those nobody came for.
 
     Returns the ids of the jobs that were sent again.
     """
     silent = Q(heartbeat_at__lt=now - LOST_AFTER) | Q(heartbeat_at__isnull=True)
     unfinished = Q(state__in=[Job.State.QUEUED, Job.State.RUNNING])
-    return [job.pk for job in Job.objects.filter(silent, unfinished) if _give_back(job, now)]
+    found = Job.objects.filter(silent, unfinished)
+    return [job.pk for job in found if not _is_held(job) and _give_back(job, now)]
+
+
+def _is_held(job: Job) -> bool:
+    """Whether a process on it is alive, though the row does not say so."""
+    silence = jobs_lease.silence(job.pk, job.attempts) if job.state == Job.State.RUNNING else None
+    return silence is not None and silence < STOPPED_AFTER
 
 
 def _give_back(job: Job, now: datetime) -> bool:
-    # Whoever is first wins: a worker that reports after all, or another process that looks as well.
-    same = Job.objects.filter(
-        pk=job.pk, state=job.state, attempts=job.attempts, heartbeat_at=job.heartbeat_at
-    )
-    if job.cancel_requested:
-        same.update(state=Job.State.CANCELLED, finished_at=now)
-        return False
-    if job.state == Job.State.RUNNING and job.attempts >= MOST_ATTEMPTS:
-        same.update(
-            state=Job.State.FAILED,
-            finished_at=now,
-            message=f"Its worker stopped in the middle, {job.attempts} times. Look into the worker's log.",
+    with transaction.atomic():
+        # Whoever is first wins: a worker that reports after all, or another process that looks as well.
+        # Somebody who has the row locked is alive.
+        same = Job.objects.filter(
+            pk=job.pk, state=job.state, attempts=job.attempts, heartbeat_at=job.heartbeat_at
         )
-        return False
-    if not same.update(state=Job.State.QUEUED, heartbeat_at=now):
-        return False
-    _send_after_commit(job.pk)
-    return True
+        if not list(same.select_for_update(skip_locked=True)):
+            return False
+        if job.state == Job.State.RUNNING:
+            jobs_lease.forget(job.pk, job.attempts)
+        ended = _end_of_lost(job)
+        if ended:
+            same.update(finished_at=now, **ended)
+            return False
+        same.update(state=Job.State.QUEUED, heartbeat_at=now)
+        _send_after_commit(job.pk)
+        return True
+
+
+def _end_of_lost(job: Job) -> dict[str, Any]:
+    """How a lost job ends that is not to be done again; empty when it is."""
+    if job.result:
+        return {}  # its work is done and written: the next worker only says so
+    if job.cancel_requested:
+        return {"state": Job.State.CANCELLED}
+    if job.state == Job.State.RUNNING and job.attempts >= MOST_ATTEMPTS:
+        return {"state": Job.State.FAILED, "message": _killer(job)}
+    return {}
+
+
+def _killer(job: Job) -> str:
+    at = f", the last time at “{job.message}”" if job.message else ""
+    return (
+        f"Its worker was killed {job.attempts} times{at}. Most often the machine has too little memory for "
+        "it; the worker's log may say more. Try again with less at once or on a larger machine."
+    )
 
 
 def _send_after_commit(job_id: int) -> None:

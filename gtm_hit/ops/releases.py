@@ -20,7 +20,8 @@ from gtm_hit.models import Dataset, Job, Layer, Release
 from gtm_hit.ops import exporting, jobs
 from gtm_hit.ops.export_folder import FRAMES, TABLE, ExportFolder
 from gtm_hit.ops.export_formats.registry import chosen
-from gtm_hit.ops.export_formats.target import RECTANGLES, Report
+from gtm_hit.ops.export_formats.target import RECTANGLES
+from gtm_hit.ops.jobs_progress import Progress, percents
 from gtm_hit.ops.quality.layer_rows import state_of
 from gtm_hit.ops.quality.statistics import ground_coverage, layer_statistics
 from gtm_hit.ops.quality.statistics_figures import FIGURES, figure
@@ -81,12 +82,12 @@ def run(mine: jobs.Run) -> dict[str, Any]:
 
     def remember(release: Release) -> None:
         # In the release's own transaction: there is never one its job does not know of.
-        Job.objects.filter(pk=mine.job.pk).update(result=_result(release))
+        mine.keep(result=_result(release))
 
     release = make_release(
         order,
         partial,
-        exporting.shared_report(mine, SHARES),
+        percents(mine, SHARES),
         lambda: mine.confirm(100, 100),
         remember,
     )
@@ -96,7 +97,7 @@ def run(mine: jobs.Run) -> dict[str, Any]:
 def make_release(
     order: Order,
     partial: Path,
-    report: Report,
+    report: Progress,
     confirm: Callable[[], None] | None = None,
     remember: Callable[[Release], None] | None = None,
 ) -> Release:
@@ -181,7 +182,7 @@ def figure_of(release: Release, name: str) -> str:
 
 
 def _write(
-    order: Order, content: Path, packed: StableZip, number: int, before: Release | None, report: Report
+    order: Order, content: Path, packed: StableZip, number: int, before: Release | None, report: Progress
 ) -> Manifest:
     layer, dataset = order.layer, order.layer.dataset
     state = state_of(layer)

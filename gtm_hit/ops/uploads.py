@@ -6,12 +6,13 @@
 
 from __future__ import annotations
 
+import logging
 import re
 import shutil
 import stat
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import timedelta
@@ -27,6 +28,7 @@ from gtm_hit.formats.dataset_folder import natural_key
 from gtm_hit.formats.files import replacing
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList
 from gtm_hit.models import Job
+from gtm_hit.ops.jobs_progress import Steps
 
 MEGABYTE = 1_000_000
 MOST_ENTRIES = 500_000
@@ -38,11 +40,10 @@ VIDEO_SUFFIXES = {".mp4", ".m4v", ".mov", ".mkv", ".avi", ".mts", ".ts", ".mpg",
 KEPT = timedelta(days=7)
 REGULAR = {0, stat.S_IFREG, stat.S_IFDIR}  # 0: made where files have no kind
 
+logger = logging.getLogger(__name__)
 _UNSAFE = re.compile(r"[^A-Za-z0-9._-]+")
 _UNPACKED = re.compile(r"unpacked-(?P<job>\d+)-(?P<attempt>\d+)")
 _DRIVE = re.compile(r"[A-Za-z]:")
-
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
@@ -144,7 +145,7 @@ def checked_entries(path: Path) -> list[zipfile.ZipInfo]:
     return files
 
 
-def unpack(path: Path, folder: Path, progress: Progress) -> None:
+def unpack(path: Path, folder: Path, progress: Steps) -> None:
     """Write the archive's files below `folder`; counts bytes itself, for a directory may lie about sizes."""
     files = checked_entries(path)
     total = sum(info.file_size for info in files)
@@ -170,7 +171,7 @@ def dataset_folder(folder: Path) -> Path:
 
 
 @contextmanager
-def unpacked(source: Source, job: Job, progress: Progress) -> Iterator[Path]:
+def unpacked(source: Source, job: Job, progress: Steps) -> Iterator[Path]:
     """The source as a folder, which is gone afterwards if it came out of an archive."""
     if not source.is_archive:
         yield source.path
@@ -186,7 +187,7 @@ def unpacked(source: Source, job: Job, progress: Progress) -> Iterator[Path]:
 
 
 @contextmanager
-def extracted(path: Path, progress: Progress) -> Iterator[Path]:
+def extracted(path: Path, progress: Steps) -> Iterator[Path]:
     """A folder as it is, or what is in a zip, which is gone afterwards; checked as an upload is."""
     if path.is_dir() or path.suffix.lower() != ".zip":
         yield path
@@ -198,11 +199,24 @@ def extracted(path: Path, progress: Progress) -> Iterator[Path]:
         yield dataset_folder(folder)
 
 
+def let_go(key: str, job: Job) -> None:
+    """Remove an uploaded archive its job has imported, unless another job was started with it as well."""
+    found = source(key)
+    if found is None or not found.was_uploaded or key in _wanted(but=job):
+        return
+    try:
+        found.path.unlink(missing_ok=True)
+    except OSError:
+        # The import is done all the same; the clock tries again in a week.
+        logger.exception("%s cannot be removed", found.path)
+
+
 def remove_leftovers() -> None:
     """What killed workers and commands unpacked, and archives nobody imported for a week."""
     if not settings.UPLOADS_ROOT.is_dir():
         return
     running = set(Job.objects.filter(state=Job.State.RUNNING).values_list("pk", "attempts"))
+    wanted = _wanted()
     oldest = (timezone.now() - KEPT).timestamp()
     for path in settings.UPLOADS_ROOT.iterdir():
         match = _UNPACKED.fullmatch(path.name)
@@ -213,8 +227,16 @@ def remove_leftovers() -> None:
             abandoned = path.is_dir() and path.name[0] == "." and old
         if abandoned:
             shutil.rmtree(path, ignore_errors=True)
-        elif path.is_file() and old and not running:
+        elif path.is_file() and old and not running and f"uploads/{path.name}" not in wanted:
             path.unlink(missing_ok=True)
+
+
+def _wanted(but: Job | None = None) -> set[str]:
+    """Sources of jobs that are under way or wait for a worker."""
+    jobs = Job.objects.filter(state__in=[Job.State.QUEUED, Job.State.RUNNING])
+    if but is not None:
+        jobs = jobs.exclude(pk=but.pk)
+    return {key for key in jobs.values_list("parameters__source", flat=True) if key}
 
 
 def _reason_against(info: zipfile.ZipInfo) -> str:

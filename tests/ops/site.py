@@ -48,9 +48,10 @@ class Site:
         return finished.stdout
 
     @contextmanager
-    def worker(self) -> Iterator[subprocess.Popen[bytes]]:
+    def worker(self, app: str = "annotator", processes: int = 1) -> Iterator[subprocess.Popen[bytes]]:
         """A Celery worker with its clock; killed at the end like by a power cut."""
-        command = [sys.executable, "-m", "celery", "-A", "annotator", "worker", "-B", "-c", "1", "-l", "INFO"]
+        command = [sys.executable, "-m", "celery", "-A", app, "worker", "-B"]
+        command += ["-c", str(processes), "-l", "INFO"]
         with (self.folder / "worker.log").open("wb") as log:
             process = subprocess.Popen(
                 command, cwd=REPOSITORY, env=self.environment, stdout=log, stderr=log, start_new_session=True

@@ -150,22 +150,20 @@ def test_a_file_that_is_not_there_has_no_size(tmp_path: Path) -> None:
 
 
 def test_a_file_is_named_by_its_bytes() -> None:
-    digest, new = store(b"bytes")
-    assert new
+    digest = store(b"bytes")
     with default_storage.open(f"images/{digest[:2]}/{digest}.jpg") as stream:
         assert stream.read() == b"bytes"
 
 
 def test_the_same_bytes_are_stored_once(tmp_path: Path) -> None:
-    assert store(b"bytes")[0] == store(b"bytes")[0]
-    assert store(b"bytes")[1] is False
+    assert store(b"bytes") == store(b"bytes")
     assert len([path for path in (tmp_path / "media").rglob("*") if path.is_file()]) == 1
 
 
 def test_a_file_cut_short_by_a_crash_is_written_again() -> None:
-    digest, _new = store(b"bytes")
+    digest = store(b"bytes")
     Path(default_storage.path(images.storage_name(digest))).write_bytes(b"by")
-    assert store(b"bytes") == (digest, True)
+    assert store(b"bytes") == digest
     with default_storage.open(images.storage_name(digest)) as stream:
         assert stream.read() == b"bytes"
 
@@ -173,8 +171,8 @@ def test_a_file_cut_short_by_a_crash_is_written_again() -> None:
 def test_a_storage_without_a_folder_takes_the_same_names(monkeypatch: pytest.MonkeyPatch) -> None:
     storage = InMemoryStorage()
     monkeypatch.setattr(images, "default_storage", storage)
-    digest, _new = store(b"bytes")
-    assert store(b"bytes") == (digest, False)
+    digest = store(b"bytes")
+    assert store(b"bytes") == digest
     assert storage.open(images.storage_name(digest)).read() == b"bytes"
 
 

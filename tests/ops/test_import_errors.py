@@ -6,14 +6,17 @@ import errno
 import json
 import zlib
 from collections.abc import Callable
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
 from django.apps import apps
 from django.core.files.storage import default_storage
+from django.utils import timezone
 
 from gtm_hit.models import Dataset, Frame
 from gtm_hit.ops.importing.dataset import ImportFailed, import_dataset
+from gtm_hit.ops.picture_cleanup import remove_unused_pictures
 from tests.dataset_folder import GRID, add_calibrations, make_folder, options, picture
 
 pytestmark = pytest.mark.django_db
@@ -42,6 +45,8 @@ def problems_of(folder: Path, **changes: object) -> list[str]:
 
 
 def stored_files() -> list[str]:
+    """What is left when the clock has cleaned up, a day later: until then another import may count on it."""
+    remove_unused_pictures(timezone.now() + timedelta(days=1, minutes=1))
     root = Path(default_storage.path(""))
     return [str(path) for path in root.rglob("*") if path.is_file()]
 

@@ -1,16 +1,21 @@
 from __future__ import annotations
 
 import io
+import os
 import shutil
 import zipfile
+from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
 import pytest
 from django.core.management import CommandError, call_command
+from django.utils import timezone
 
 from gtm_hit.models import Dataset, Frame, Image, Job
 from gtm_hit.ops import import_jobs, jobs, uploads
+from gtm_hit.ops.importing import rows
+from gtm_hit.ops.picture_cleanup import remove_unused_pictures
 from gtm_hit.tasks import OPERATIONS
 from tests.archives import zipped
 from tests.dataset_folder import NAMES, VALUES, make_folder
@@ -118,7 +123,81 @@ def test_a_cancelled_import_leaves_nothing(
     assert done(job).state == Job.State.CANCELLED
     assert not Dataset.objects.exists()
     assert [path.name for path in (tmp_path / "uploads").iterdir()] == ["square.zip"]
+    remove_unused_pictures(timezone.now() + timedelta(days=1, minutes=1))
     assert not list((tmp_path / "media").rglob("*.jpg"))
+
+
+def test_an_import_that_was_written_ends_as_done_though_its_worker_was_given_up(
+    archive: uploads.Source, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = import_jobs.start_import(archive, options())
+    original = jobs.Run.finish
+
+    def too_late(self: jobs.Run, result: dict[str, Any]) -> None:
+        Job.objects.filter(attempts=1).update(state=Job.State.QUEUED)
+        original(self, result)
+
+    monkeypatch.setattr(jobs.Run, "finish", too_late)
+    assert done(job).state == Job.State.QUEUED
+    again = done(job)
+    assert (again.state, again.attempts, again.message) == (Job.State.DONE, 2, "")
+    assert (again.result["frames"], again.dataset) == (2, Dataset.objects.get(slug="square"))
+    assert not archive.path.exists()
+
+
+def test_a_worker_killed_after_the_rows_were_written_leaves_nothing_to_do_but_tidy(
+    archive: uploads.Source, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = import_jobs.start_import(archive, options())
+
+    class Killed(BaseException):
+        pass
+
+    def killed(*_told: object) -> None:
+        raise Killed
+
+    with monkeypatch.context() as patch, pytest.raises(Killed):
+        patch.setattr(uploads, "let_go", killed)
+        done(job)
+    assert archive.path.exists()
+    Job.objects.update(heartbeat_at=None, cancel_requested=True, attempts=jobs.MOST_ATTEMPTS)
+    assert jobs.requeue_lost(timezone.now()) == [job.pk]
+    assert done(job).state == Job.State.DONE
+    assert not archive.path.exists()
+
+
+def test_a_worker_that_lost_its_import_before_it_was_written_writes_nothing(
+    archive: uploads.Source, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = import_jobs.start_import(archive, options())
+    original = rows.add_frames
+
+    def stopped_for_minutes(*values: Any) -> None:
+        Job.objects.update(attempts=2)
+        original(*values)
+
+    monkeypatch.setattr(rows, "add_frames", stopped_for_minutes)
+    ended = done(job)
+    assert (ended.state, ended.result) == (Job.State.RUNNING, {})
+    assert not Dataset.objects.exists()
+
+
+def test_an_upload_stays_while_another_import_waits_for_it(archive: uploads.Source) -> None:
+    first, second = (import_jobs.start_import(archive, each) for each in (options(), options(slug="other")))
+    assert done(first).state == Job.State.DONE
+    assert archive.path.exists()
+    assert done(second).state == Job.State.DONE
+    assert not archive.path.exists()
+
+
+def test_an_old_upload_stays_while_an_import_waits_for_it(archive: uploads.Source) -> None:
+    job = import_jobs.start_import(archive, options())
+    os.utime(archive.path, (0, 0))
+    uploads.remove_leftovers()
+    assert archive.path.exists()
+    jobs.cancel(job)
+    uploads.remove_leftovers()
+    assert not archive.path.exists()
 
 
 # Videos

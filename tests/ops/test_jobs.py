@@ -199,12 +199,13 @@ def test_a_waiting_job_nobody_came_for_is_sent_again_once_per_interval(dataset: 
     assert job.attempts == 0
 
 
-def test_after_five_lost_workers_a_job_fails_with_a_reason(dataset: Dataset) -> None:
-    run = claimed(dataset, heartbeat_at=long_ago(), attempts=5)
+def test_after_three_killed_workers_a_job_fails_and_says_where_and_why(dataset: Dataset) -> None:
+    run = claimed(dataset, heartbeat_at=long_ago(), attempts=3, message="frames: 7 of 9")
     assert jobs.requeue_lost(timezone.now()) == []
     job = Job.objects.get(pk=run.job.pk)
     assert job.state == Job.State.FAILED
-    assert "5 times" in job.message
+    assert "killed 3 times, the last time at “frames: 7 of 9”" in job.message
+    assert "too little memory" in job.message
 
 
 def test_a_lost_job_that_was_to_be_cancelled_does_not_come_back(dataset: Dataset) -> None:

@@ -6,19 +6,23 @@ from django.conf import settings
 from django.core.management.base import BaseCommand
 from django.utils import timezone
 
-from gtm_hit.ops import export_expiry, exporting, uploads
+from gtm_hit.ops import export_expiry, exporting, picture_cleanup, uploads
 
 
 class Command(BaseCommand):
     help = (
-        "Remove the files of exports older than EXPORT_KEEP_DAYS, archives nobody imported for a week, and "
-        "unfinished work of killed workers. The Celery beat does the same every hour. Releases always stay."
+        "Remove the files of exports older than EXPORT_KEEP_DAYS, archives nobody imported for a week, "
+        "unfinished work of killed workers, and pictures that failed imports left. The Celery beat "
+        "does the same every hour. Releases always stay."
     )
 
     def handle(self, *args: Any, **options: Any) -> None:
         exporting.remove_dead_partials()
         uploads.remove_leftovers()
+        pictures = picture_cleanup.remove_unused_pictures(timezone.now())
         count = export_expiry.expire(timezone.now())
         days = settings.EXPORT_KEEP_DAYS
         kept = f"exports are kept for {days} days" if days else "exports are kept for ever"
+        if pictures:
+            self.stdout.write(f"{pictures} unused pictures removed.")
         self.stdout.write(f"{count} expired exports removed; {kept}.")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import zipfile
 from collections.abc import Collection
+from functools import partial
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -16,11 +17,10 @@ from django.utils.text import slugify
 from gtm_hit.formats.files import replacing
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.models import Dataset, Job, Layer
-from gtm_hit.ops import exporting, jobs, uploads
+from gtm_hit.ops import jobs, uploads
 from gtm_hit.ops.annotation_import.findings import Kind
 from gtm_hit.ops.annotation_import.layers import (
     TABLE,
-    WRITING,
     AnnotationSource,
     LayerReport,
     import_annotations,
@@ -29,8 +29,8 @@ from gtm_hit.ops.annotation_import.placing import PLACING
 from gtm_hit.ops.annotation_import.reading import READERS, READING
 from gtm_hit.ops.import_jobs import told
 from gtm_hit.ops.importing.dataset import ImportFailed
+from gtm_hit.ops.jobs_progress import UNPACKING, WRITING, percents
 
-UNPACKING = "unpacking"
 SHARES = {UNPACKING: (0, 10), READING: (10, 35), TABLE: (35, 40), PLACING: (40, 60), WRITING: (60, 100)}
 
 
@@ -89,20 +89,21 @@ def keep(upload: UploadedFile) -> uploads.Source:
 
 def run(mine: jobs.Run) -> dict[str, Any]:
     """The operation of an import job. A worker that takes it up again finds the layer it has made."""
-    if mine.job.result:
-        return mine.job.result
     parameters = mine.job.parameters
+    if mine.job.result:
+        uploads.let_go(parameters["source"], mine.job)
+        return mine.job.result
     dataset, source = mine.job.dataset, uploads.source(parameters["source"])
     if dataset is None or source is None:
         raise AnnotationImportError(f"{parameters['source']} is no longer there.")
-    report = exporting.shared_report(mine, SHARES)
+    report = percents(mine, SHARES)
 
     def remember(found: LayerReport) -> None:
         # In the layer's own transaction: there is never one its job does not know of.
-        Job.objects.filter(pk=mine.job.pk).update(result=_result(found))
+        mine.keep(result=_result(found))
 
     try:
-        with uploads.unpacked(source, mine.job, lambda *steps: report(UNPACKING, *steps)) as folder:
+        with uploads.unpacked(source, mine.job, partial(report, UNPACKING)) as folder:
             wanted = AnnotationSource(
                 folder,
                 parameters["format"],
@@ -116,8 +117,7 @@ def run(mine: jobs.Run) -> dict[str, Any]:
     except FormatError as error:
         problems = error.relative_to(settings.UPLOADS_ROOT).problems
         raise AnnotationImportError(told(problems, "nothing was imported")) from error
-    if source.was_uploaded:
-        source.path.unlink(missing_ok=True)
+    uploads.let_go(source.key, mine.job)
     return _result(found)
 
 

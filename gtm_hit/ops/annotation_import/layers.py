@@ -16,16 +16,16 @@ from gtm_hit.ops.annotation_import import findings as sieve
 from gtm_hit.ops.annotation_import.exported import part_of
 from gtm_hit.ops.annotation_import.findings import Findings, Kind
 from gtm_hit.ops.annotation_import.placing import place
-from gtm_hit.ops.annotation_import.reading import READERS, Report, Scene
+from gtm_hit.ops.annotation_import.reading import READERS, Scene
 from gtm_hit.ops.annotation_import.tables import Boxes, Floats, People
 from gtm_hit.ops.annotation_rules import HEIGHTS, RADII, Row
 from gtm_hit.ops.coverage import table
 from gtm_hit.ops.importing import rows
 from gtm_hit.ops.importing.annotations import ImportedFrame
 from gtm_hit.ops.importing.dataset import ImportFailed
+from gtm_hit.ops.jobs_progress import WRITING, Progress
 
 TABLE = "computing the rectangle table"
-WRITING = "writing to the database"
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def no_confirmation() -> None:
 def import_annotations(
     dataset: Dataset,
     source: AnnotationSource,
-    report: Report,
+    report: Progress,
     confirm: Callable[[], None] = no_confirmation,
     remember: Callable[[LayerReport], None] | None = None,
 ) -> LayerReport:
@@ -91,7 +91,7 @@ def import_annotations(
     return done
 
 
-def _read(dataset: Dataset, source: AnnotationSource, report: Report, findings: Findings) -> People:
+def _read(dataset: Dataset, source: AnnotationSource, report: Progress, findings: Findings) -> People:
     _check_layer(dataset, source.layer)
     cameras = dataset.calibrated_cameras()
     numbers = list(Frame.objects.filter(dataset=dataset).order_by("number").values_list("number", flat=True))
@@ -171,7 +171,7 @@ def _or_none(values: Floats) -> list[float | None]:
     return [value if value == value else None for value in values.tolist()]
 
 
-def _told(frames: Iterator[ImportedFrame], total: int, report: Report) -> Iterator[ImportedFrame]:
+def _told(frames: Iterator[ImportedFrame], total: int, report: Progress) -> Iterator[ImportedFrame]:
     for done, frame in enumerate(frames, start=1):
         report(WRITING, done, total)
         yield frame

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from gtm_hit.geometry.fusion import feet, fuse, ground_points
 from gtm_hit.geometry.grouping import group_by_place, link, same_ids_same_people
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.ops.annotation_import.tables import NOBODY, Boxes, Floats, Ids, People, people
+from gtm_hit.ops.jobs_progress import Progress
 
 PLACING = "finding positions"
 PEOPLE_AT_ONCE = 4096
@@ -24,7 +25,7 @@ def place(
     boxes: Boxes,
     table: RectangleTable,
     cameras: Sequence[Camera],
-    report: Callable[[str, int, int], None],
+    report: Progress,
 ) -> People:
     """One person for the boxes of one person in several views of a frame.
 

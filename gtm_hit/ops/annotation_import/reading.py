@@ -21,14 +21,13 @@ from gtm_hit.geometry.grid import Grid
 from gtm_hit.models import Dataset
 from gtm_hit.ops.annotation_import.tables import NOBODY, Boxes, Ids, People, Sources, people
 from gtm_hit.ops.importing.annotations import cylinder_of
+from gtm_hit.ops.jobs_progress import Progress
 
 READING = "reading annotations"
 GROUND = "ground"  # the folder of a MOTChallenge export that says where people stand
 ANY_FRAME = range(1, 2**31)  # frames the dataset does not have are told later, line by line
 
 _NUMBER = re.compile(r"([0-9]{1,9})$")
-
-Report = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +43,7 @@ class Scene:
         return self.dataset.grid
 
 
-def read_wildtrack(path: Path, scene: Scene, report: Report) -> People:
+def read_wildtrack(path: Path, scene: Scene, report: Progress) -> People:
     """A folder of per-frame JSON."""
     problems = ProblemList(path)
     if not path.is_dir():
@@ -67,7 +66,7 @@ def read_wildtrack(path: Path, scene: Scene, report: Report) -> People:
     return found.people(list(files.values()))
 
 
-def read_csv_metres(path: Path, scene: Scene, report: Report) -> People:
+def read_csv_metres(path: Path, scene: Scene, report: Progress) -> People:
     path = _only(path, ".csv")
     table = read_csv(path, repeated=True)
     report(READING, 1, 1)
@@ -80,7 +79,7 @@ def read_csv_metres(path: Path, scene: Scene, report: Report) -> People:
     return People(found.frames, found.persons, found.positions, heights, found.radii, sources)
 
 
-def read_text(path: Path, scene: Scene, report: Report) -> People:
+def read_text(path: Path, scene: Scene, report: Progress) -> People:
     """`frame column row`, and the person where all lines have one."""
     path = _only(path, ".txt")
     table = frame_column_row.read(path, persons=None, repeated=True)
@@ -91,7 +90,7 @@ def read_text(path: Path, scene: Scene, report: Report) -> People:
     return people(table.frames, table.persons, positions, _lines(path, table.lines))
 
 
-def read_mot_files(path: Path, scene: Scene, report: Report) -> People | Boxes:
+def read_mot_files(path: Path, scene: Scene, report: Progress) -> People | Boxes:
     """A file of people on the ground, or a folder with a file per view.
 
     A folder's ground file says exactly where people stand, so it is taken alone.
@@ -117,7 +116,7 @@ def read_mot_files(path: Path, scene: Scene, report: Report) -> People | Boxes:
     return _boxes_of_mot(tables, scene)
 
 
-def read_coco_files(path: Path, scene: Scene, report: Report) -> Boxes:
+def read_coco_files(path: Path, scene: Scene, report: Progress) -> Boxes:
     """One JSON file with the images of all views, or a folder with a file per view."""
     problems = ProblemList(path)
     files = [path]
@@ -137,7 +136,7 @@ def read_coco_files(path: Path, scene: Scene, report: Report) -> Boxes:
     return _boxes_of_coco(found, scene, problems)
 
 
-READERS: Mapping[str, Callable[[Path, Scene, Report], People | Boxes]] = {
+READERS: Mapping[str, Callable[[Path, Scene, Progress], People | Boxes]] = {
     "wildtrack": read_wildtrack,
     "text": read_text,
     "mot": read_mot_files,

@@ -15,8 +15,8 @@ from gtm_hit.models import Dataset, Job
 from gtm_hit.ops import jobs
 from gtm_hit.ops.calibration import replacing
 from gtm_hit.ops.calibration.replacing import ReplacementError
+from gtm_hit.ops.jobs_progress import percents
 
-# Percents of the whole at which each phase begins and ends.
 SHARES = {replacing.RECTANGLES: (0, 60), replacing.COMPARING: (60, 100)}
 
 
@@ -27,12 +27,8 @@ def start(dataset: Dataset, cameras: Sequence[Camera], user: User | None = None)
 
 
 def run(mine: jobs.Run) -> dict[str, Any]:
-    def report(phase: str, done: int, total: int) -> None:
-        first, last = SHARES[phase]
-        mine.report(first + (last - first) * done // max(total, 1), 100, f"{phase}: {done} of {total}")
-
     assert mine.job.dataset is not None
-    return replacing.preview(mine.job.dataset, cameras_of(mine.job), report)
+    return replacing.preview(mine.job.dataset, cameras_of(mine.job), percents(mine, SHARES))
 
 
 def confirm(job: Job, user: User | None = None) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -16,12 +16,11 @@ from gtm_hit.geometry.cylinder import Cylinder
 from gtm_hit.geometry.table import RectangleTable, table_digest
 from gtm_hit.models import Annotation, Dataset, Image, Layer, Save
 from gtm_hit.ops.calibration.comparison import Calibration, Comparison, Moved, Person
+from gtm_hit.ops.jobs_progress import Progress
 
 PEOPLE_TOGETHER = 20_000
 RECTANGLES, COMPARING = "computing rectangles", "comparing boxes"
 LATTICE = 7  # positions along each side that stand in for people where nobody is annotated
-
-Progress = Callable[[str, int, int], None]
 
 
 class ReplacementError(ValueError):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,9 +13,9 @@ from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Dataset, Frame, Layer
 from gtm_hit.ops.export_files import ExportFiles
 from gtm_hit.ops.export_frames import Chunk
+from gtm_hit.ops.jobs_progress import Progress
 
 RECTANGLES = "writing rectangles"
-Report = Callable[[str, int, int], None]  # the phase in words, steps done, steps in all
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +26,7 @@ class Target:
     layer: Layer
     cameras: Sequence[Camera]
     table: RectangleTable
-    report: Report
+    report: Progress
     open_files: ExitStack
 
     @property

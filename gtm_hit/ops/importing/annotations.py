@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Annotation, Dataset
 from gtm_hit.ops.annotation_rules import HEIGHTS, MAX_PEOPLE, RADII, Row, is_number
+from gtm_hit.ops.jobs_progress import Steps
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ def read_annotations(
     paths: Mapping[int, Path],
     dataset: Dataset,
     cameras: int,
-    progress: Callable[[int, int], None],
+    progress: Steps,
     problems: ProblemList,
 ) -> list[ImportedFrame]:
     """The frames of files by frame number; bad files are problems, with all that is wrong in them."""

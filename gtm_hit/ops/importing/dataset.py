@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from django.conf import settings
@@ -20,10 +21,9 @@ from gtm_hit.ops.importing import rows
 from gtm_hit.ops.importing.annotations import ImportedFrame, compare_boxes, ignored_sizes, read_annotations
 from gtm_hit.ops.importing.calibrations import View, read_views, tell_differences, tell_wrong_unit
 from gtm_hit.ops.importing.options import PRESETS, ImportOptions, scene
-from gtm_hit.ops.importing.pictures import Key, Picture, camera_sizes, discard, make_pictures
-
-Progress = Callable[[str, int, int], None]
-"""Phase in words, steps done, steps in all."""
+from gtm_hit.ops.importing.pictures import Key, Known, Picture, camera_sizes, make_pictures
+from gtm_hit.ops.jobs_progress import WRITING, Progress, no_progress
+from gtm_hit.ops.picture_cleanup import pictures_in_use
 
 
 class ImportFailed(Exception):
@@ -57,7 +57,7 @@ class Reading:
     layout: Layout
     views: list[View]
     layer: Layer | None
-    known_images: dict[Key, str]  # digests of the files imported before
+    known_images: dict[Key, Known]
     numbers: list[int]  # frames to add
     imported: list[ImportedFrame]
     notes: list[str]
@@ -67,27 +67,27 @@ class Reading:
         return [view.camera for view in self.views]
 
 
-def no_progress(_phase: str, _done: int, _total: int) -> None:
-    pass
-
-
-def import_dataset(options: ImportOptions, progress: Progress = no_progress) -> ImportReport:
+def import_dataset(
+    options: ImportOptions,
+    progress: Progress = no_progress,
+    remember: Callable[[ImportReport], object] | None = None,
+) -> ImportReport:
     """Import what is new in a folder, or nothing at all.
 
-    Raises ImportFailed with all problems of the run. Files of derivatives it made are deleted again then;
-    the database is written in one transaction at the end.
+    Raises ImportFailed with all problems of the run. The database is written in one transaction at the end,
+    in which `remember` is told. Derivatives of a failed run stay: another one may have found them there and
+    count on them. `picture_cleanup` removes later what nobody uses.
     """
     problems = ProblemList("")
-    written: set[str] = set()
     try:
-        reading = _read(options, progress, problems)
-        made = _make(reading, written, progress, problems)
-        progress("writing to the database", 0, 1)
-        report = _write(reading, made)
-        progress("writing to the database", 1, 1)
-        return report
+        with pictures_in_use():
+            reading = _read(options, progress, problems)
+            made = _make(reading, progress, problems)
+            progress(WRITING, 0, 1)
+            report = _write(reading, made, remember)
+            progress(WRITING, 1, 1)
+            return report
     except BaseException as error:
-        discard(written)
         if isinstance(error, FormatError):
             raise ImportFailed(error.relative_to(options.folder.resolve()).problems) from error
         if isinstance(error, IntegrityError):
@@ -170,13 +170,14 @@ def _layout(
     return layout
 
 
-def _known_images(existing: Dataset | None) -> dict[Key, str]:
+def _known_images(existing: Dataset | None) -> dict[Key, Known]:
     if existing is None:
         return {}
     found = Image.objects.filter(frame__dataset=existing)
+    digests = ("source_digest", "light_digest", "full_digest")
     return {
-        (camera, number): digest
-        for camera, number, digest in found.values_list("camera__index", "frame__number", "source_digest")
+        (camera, number): Known(*known)
+        for camera, number, *known in found.values_list("camera__index", "frame__number", *digests)
     }
 
 
@@ -184,7 +185,7 @@ def _new_numbers(
     options: ImportOptions,
     dataset: Dataset,
     layout: Layout,
-    known_images: Mapping[Key, str],
+    known_images: Mapping[Key, Known],
     notes: list[str],
 ) -> list[int]:
     """Frames to add: every n-th, and whatever has annotations."""
@@ -224,7 +225,7 @@ def _annotations(
         paths,
         dataset,
         len(layout.cameras),
-        lambda done, total: progress("reading annotations", done, total),
+        partial(progress, "reading annotations"),
         problems,
     )
     if ignored := ignored_sizes(frames):
@@ -232,9 +233,7 @@ def _annotations(
     return frames
 
 
-def _make(
-    reading: Reading, written: set[str], progress: Progress, problems: ProblemList
-) -> dict[Key, Derivatives]:
+def _make(reading: Reading, progress: Progress, problems: ProblemList) -> dict[Key, Derivatives]:
     """The table and the derivatives; with problems so far, images are only checked, to tell all at once."""
     only_check = bool(problems)
     if not only_check:
@@ -251,9 +250,7 @@ def _make(
     # By frame: all views of one instant are close together on most disks, and so are their derivatives.
     pictures.sort(key=lambda picture: (picture.key[1], picture.key[0]))
     phase = "checking images" if only_check else "making images"
-    made = make_pictures(
-        pictures, written, lambda done, total: progress(phase, done, total), problems, only_check
-    )
+    made = make_pictures(pictures, partial(progress, phase), problems, only_check)
     problems.raise_if_any()
     return made
 
@@ -266,7 +263,7 @@ def _make_table(reading: Reading, progress: Progress, problems: ProblemList) -> 
         dataset.grid,
         dataset.cylinder,
         dataset.rule,
-        lambda done, total: progress("computing rectangles", done, total),
+        partial(progress, "computing rectangles"),
     )
     dataset.table_digest = table.digest
     blind = [camera.name for camera in cameras if not table.visible(camera.index).any()]
@@ -282,11 +279,16 @@ def _make_table(reading: Reading, progress: Progress, problems: ProblemList) -> 
         )
 
 
-def _write(reading: Reading, made: Mapping[Key, Derivatives]) -> ImportReport:
+def _write(
+    reading: Reading,
+    made: Mapping[Key, Derivatives],
+    remember: Callable[[ImportReport], object] | None,
+) -> ImportReport:
     options = reading.options
     with transaction.atomic():
         dataset = _write_dataset(reading)
         rows.add_frames(dataset, reading.numbers, made)
+        rows.mend_images(dataset, {key: made[key] for key in made.keys() & reading.known_images.keys()})
         layer = reading.layer
         if reading.imported:
             if layer is None:
@@ -294,15 +296,18 @@ def _write(reading: Reading, made: Mapping[Key, Derivatives]) -> ImportReport:
                     dataset=dataset, name=options.layer, kind=options.layer_kind, hidden=options.hidden_layer
                 )
             rows.add_annotations(layer, reading.imported)
-    return ImportReport(
-        dataset=dataset,
-        layer=layer,
-        frames_added=len(reading.numbers),
-        images_added=len(made),
-        annotated_frames_added=len(reading.imported),
-        people_added=sum(len(frame.rows) for frame in reading.imported),
-        notes=reading.notes,
-    )
+        report = ImportReport(
+            dataset=dataset,
+            layer=layer,
+            frames_added=len(reading.numbers),
+            images_added=len(made.keys() - reading.known_images.keys()),
+            annotated_frames_added=len(reading.imported),
+            people_added=sum(len(frame.rows) for frame in reading.imported),
+            notes=reading.notes,
+        )
+        if remember:
+            remember(report)
+    return report
 
 
 def _write_dataset(reading: Reading) -> Dataset:

@@ -4,33 +4,39 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
-
-from django.core.files.storage import default_storage
-from django.db.models import Q
+from typing import NamedTuple
 
 from gtm_hit.formats.files import read_source
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList
-from gtm_hit.models import Image
 from gtm_hit.ops import images
 from gtm_hit.ops.images import Derivatives, ImageError, Undistort
+from gtm_hit.ops.jobs_progress import Steps
 
 MOST_THREADS = 8  # each holds one decoded picture several times over
 Key = tuple[int, int]
 """Camera index and frame number."""
 
 
+class Known(NamedTuple):
+    """Digests of an image imported before: of its file then, and of what was made of it."""
+
+    source: str
+    light: str
+    full: str
+
+
 @dataclass(frozen=True)
 class Picture:
-    """One file to import; `known` is the digest of the file it was imported from before."""
+    """One file to import."""
 
     key: Key
     path: Path
     undistort: Undistort | None = None
-    known: str | None = None
+    known: Known | None = None
 
 
 def camera_sizes(
@@ -58,14 +64,14 @@ def camera_sizes(
 
 def make_pictures(
     pictures: Sequence[Picture],
-    written: set[str],
-    progress: Callable[[int, int], None],
+    progress: Steps,
     problems: ProblemList,
     only_check: bool = False,
 ) -> dict[Key, Derivatives]:
-    """Decode all, and unless `only_check` store their derivatives; `written` receives new names at once.
+    """Decode all, and unless `only_check` store their derivatives.
 
-    A picture known from before is compared instead; one that changed since is a problem.
+    A picture known from before is compared instead; one that changed since is a problem, and one whose
+    derivatives are gone from the storage is made again.
     """
     made: dict[Key, Derivatives] = {}
     found: dict[Path, str] = {}
@@ -73,7 +79,7 @@ def make_pictures(
     # Threads: decoding, remapping and encoding all let go of Python's lock. The file is read inside the
     # task, so no more pictures than threads are in memory.
     with ThreadPoolExecutor(workers) as pool:
-        futures = {pool.submit(_make, picture, written, only_check): picture for picture in pictures}
+        futures = {pool.submit(_make, picture, only_check): picture for picture in pictures}
         try:
             for done, future in enumerate(as_completed(futures), start=1):
                 picture = futures[future]
@@ -95,21 +101,6 @@ def make_pictures(
     return made
 
 
-def discard(written: Iterable[str]) -> None:
-    """Delete files of an import that failed, except those some image has come to use."""
-    names = {Path(name).stem: name for name in written}
-    used: set[str] = set()
-    digests = list(names)
-    for start in range(0, len(digests), 400):
-        chunk = digests[start : start + 400]
-        rows = Image.objects.filter(Q(light_digest__in=chunk) | Q(full_digest__in=chunk))
-        for light, full in rows.values_list("light_digest", "full_digest"):
-            used |= {light, full}
-    for digest, name in names.items():
-        if digest not in used:
-            default_storage.delete(name)
-
-
 def _sizes(paths: Iterable[Path], problems: ProblemList) -> dict[Path, tuple[int, int]]:
     found = {}
     for path in paths:
@@ -120,18 +111,17 @@ def _sizes(paths: Iterable[Path], problems: ProblemList) -> dict[Path, tuple[int
     return found
 
 
-def _make(picture: Picture, written: set[str], only_check: bool) -> Derivatives | None:
+def _make(picture: Picture, only_check: bool) -> Derivatives | None:
     try:
         data = read_source(picture.path, images.MOST_BYTES)
     except FormatError as error:
         raise ImageError(error.problems[0].reason) from error
     if picture.known is not None:
-        if images.digest_of(data) != picture.known:
+        if images.digest_of(data) != picture.known.source:
             raise ImageError("differs from the image this frame was imported with")
-        return None
+        if images.is_stored(picture.known.light) and images.is_stored(picture.known.full):
+            return None
     if only_check:
         images.decode(data)
         return None
-    derivatives = images.make_derivatives(data, picture.undistort)
-    written.update(derivatives.written)
-    return derivatives
+    return images.make_derivatives(data, picture.undistort)

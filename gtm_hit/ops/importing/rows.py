@@ -60,6 +60,17 @@ def add_frames(dataset: Dataset, numbers: Sequence[int], made: Mapping[Key, Deri
     )
 
 
+def mend_images(dataset: Dataset, made: Mapping[Key, Derivatives]) -> None:
+    """Derivatives that were made again. A newer encoder may give other bytes, so also another digest."""
+    for (camera, number), picture in made.items():
+        Image.objects.filter(frame__dataset=dataset, frame__number=number, camera__index=camera).update(
+            light_digest=picture.light_digest,
+            full_digest=picture.full_digest,
+            light_bytes=picture.light_bytes,
+            full_bytes=picture.full_bytes,
+        )
+
+
 def add_annotations(layer: Layer, imported: Iterable[ImportedFrame]) -> None:
     """Frames the layer does not have yet, each with its first save, done."""
     following = iter(imported)

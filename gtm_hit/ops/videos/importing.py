@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import fcntl
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -20,7 +20,8 @@ from django.conf import settings
 
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList
 from gtm_hit.models import Dataset
-from gtm_hit.ops.importing.dataset import ImportFailed, Progress, import_dataset, no_progress
+from gtm_hit.ops.importing.dataset import ImportFailed, ImportReport, import_dataset
+from gtm_hit.ops.jobs_progress import Progress, no_progress
 from gtm_hit.ops.videos.nearest import Taken
 from gtm_hit.ops.videos.options import VideoOptions
 from gtm_hit.ops.videos.plan import Plan, make_plan, with_usual_values
@@ -46,18 +47,23 @@ class VideoReport:
     notes: list[str] = field(default_factory=list)
 
 
-def import_videos(options: VideoOptions, progress: Progress = no_progress) -> VideoReport:
+def import_videos(
+    options: VideoOptions,
+    progress: Progress = no_progress,
+    remember: Callable[[ImportReport], object] | None = None,
+) -> VideoReport:
     """Take the frames a dataset does not have yet. Run again, it continues; a finished one adds nothing.
 
     Raises ImportFailed with all that is wrong before anything is taken. What fails later (a video damaged in
-    its middle, a full disk) leaves the parts before it imported.
+    its middle, a full disk) leaves the parts before it imported. `remember` is told of every part, in the
+    part's transaction.
     """
     problems = ProblemList("")
     options = with_usual_values(options)
     try:
         plan = make_plan(options, problems)
         with _own_folder(options.dataset.slug) as folder:
-            return _Run(options, plan, folder, progress).run()
+            return _Run(options, plan, folder, progress, remember).run()
     except FormatError as error:
         raise ImportFailed(error.relative_to(options.dataset.folder.resolve()).problems) from error
     except OSError as error:
@@ -65,11 +71,19 @@ def import_videos(options: VideoOptions, progress: Progress = no_progress) -> Vi
 
 
 class _Run:
-    def __init__(self, options: VideoOptions, plan: Plan, folder: Path, progress: Progress) -> None:
+    def __init__(
+        self,
+        options: VideoOptions,
+        plan: Plan,
+        folder: Path,
+        progress: Progress,
+        remember: Callable[[ImportReport], object] | None,
+    ) -> None:
         self.options = options
         self.plan = plan
         self.folder = folder
         self.progress = progress
+        self.remember = remember
         self.report = VideoReport(
             frames_known=len(plan.known), deviations={source.camera: 0.0 for source in plan.sources}
         )
@@ -155,13 +169,13 @@ class _Run:
         given = self.options.dataset
         calibrations = given.folder / (given.calibrations or "calibrations")
         part = replace(given, folder=self.folder, images=Path(IMAGES), calibrations=calibrations.absolute())
-        report = import_dataset(part, self._pass_on)
+        report = import_dataset(part, self._pass_on, self.remember)
         self.report.dataset = report.dataset
         self.report.frames_added += report.frames_added
         self.report.images_added += report.images_added
         self.report.notes += [note for note in report.notes if note not in self.report.notes]
 
-    def _pass_on(self, phase: str, done: int, total: int) -> None:
+    def _pass_on(self, phase: str, done: int, total: int, /) -> None:
         if phase == "computing rectangles":
             self.progress(phase, done, total)
         else:
