@@ -5,7 +5,7 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.urls import reverse
 
-from gtm_hit.models import Dataset
+from gtm_hit.management.lookups import dataset_named
 from gtm_hit.ops import tokens, workers
 
 
@@ -21,9 +21,7 @@ class Command(BaseCommand):
     def handle(
         self, *args: Any, slug: str, worker: str, platform: str, base_url: str, **options: Any
     ) -> None:
-        dataset = Dataset.objects.filter(slug=slug).first()
-        if dataset is None:
-            raise CommandError(f"There is no dataset {slug!r}.")
+        dataset = dataset_named(slug)
         try:
             platform = workers.clean_platform(platform)
             external_id = workers.clean_external_id(worker) if worker else None
