@@ -137,7 +137,7 @@ def _frames(people: People) -> Iterator[ImportedFrame]:
     """By number, also frames with nobody."""
     order = np.lexsort((people.persons, people.frames))
     numbers, starts = np.unique(people.frames[order], return_index=True)
-    ends = np.append(starts[1:], len(order))
+    ends = np.append(starts, len(order))[1:]
     found = {
         number: order[start:end]
         for number, start, end in zip(numbers.tolist(), starts.tolist(), ends.tolist(), strict=True)
