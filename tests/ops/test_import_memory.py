@@ -7,15 +7,20 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
+from django.db import connection
+from django.test.utils import CaptureQueriesContext
 
 from gtm_hit.formats.problems import ProblemList
 from gtm_hit.models import Dataset
 from gtm_hit.ops.importing import pictures
+from gtm_hit.ops.importing.dataset import import_dataset
 from gtm_hit.ops.importing.options import tell_too_many
 from gtm_hit.ops.importing.pictures import Picture, make_pictures
 from tests.conftest import REPOSITORY
+from tests.dataset_folder import make_folder, options
 
 LONG_GRID = """
 import resource, sys
@@ -97,3 +102,17 @@ def test_pictures_are_not_all_queued_at_once(watched: Watched) -> None:
 
     make_pictures(Counted(of(100, 200)), set(), lambda *_: None, ProblemList(""))
     assert max(number - begun for number, begun in taken if number < 200) <= 2 * 8
+
+
+@pytest.mark.django_db
+def test_only_images_of_the_frames_at_hand_are_compared(tmp_path: Path, settings: Any) -> None:
+    settings.MEDIA_ROOT, settings.TABLES_ROOT = tmp_path / "media", tmp_path / "tables"
+    import_dataset(options(make_folder(tmp_path / "first", (0, 5, 10))))
+    with CaptureQueriesContext(connection) as captured:
+        import_dataset(options(make_folder(tmp_path / "second", (10, 15))))
+    (asked,) = [
+        query["sql"]
+        for query in captured
+        if query["sql"].startswith("SELECT") and "source_digest" in query["sql"]
+    ]
+    assert "IN (10, 15)" in asked

@@ -90,7 +90,7 @@ def import_dataset(options: ImportOptions, progress: Progress = no_progress) -> 
     except BaseException as error:
         discard(written)
         if isinstance(error, FormatError):
-            raise ImportFailed(error.relative_to(options.folder.resolve()).problems) from error
+            raise ImportFailed(error.relative_to(options.folder).problems) from error
         if isinstance(error, IntegrityError):
             reason = "was changed by another import in the meantime; run this one again"
             raise ImportFailed((Problem(options.slug, "", reason),)) from error

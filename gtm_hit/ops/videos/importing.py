@@ -59,7 +59,7 @@ def import_videos(options: VideoOptions, progress: Progress = no_progress) -> Vi
         with _own_folder(options.dataset.slug) as folder:
             return _Run(options, plan, folder, progress).run()
     except FormatError as error:
-        raise ImportFailed(error.relative_to(options.dataset.folder.resolve()).problems) from error
+        raise ImportFailed(error.relative_to(options.dataset.folder).problems) from error
     except OSError as error:
         raise ImportFailed((Problem("", "", error.strerror or str(error)),)) from error
 
