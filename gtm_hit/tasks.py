@@ -11,6 +11,7 @@ from django.utils import timezone
 from gtm_hit.models import Job
 from gtm_hit.ops import assignments, export_expiry, exporting, import_jobs, jobs, releases, uploads
 from gtm_hit.ops.annotation_import import job as annotation_job
+from gtm_hit.ops.annotation_import import unfinished
 from gtm_hit.ops.calibration import job as calibration_job
 
 OPERATIONS: dict[str, jobs.Operation] = {
@@ -38,6 +39,7 @@ def requeue_lost_jobs() -> None:
 @shared_task
 def expire_exports() -> None:
     export_expiry.expire(timezone.now())
+    unfinished.remove_abandoned(timezone.now())
 
 
 @shared_task

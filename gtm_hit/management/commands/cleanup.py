@@ -7,6 +7,7 @@ from django.core.management.base import BaseCommand
 from django.utils import timezone
 
 from gtm_hit.ops import export_expiry, exporting, uploads
+from gtm_hit.ops.annotation_import import unfinished
 
 
 class Command(BaseCommand):
@@ -18,6 +19,7 @@ class Command(BaseCommand):
     def handle(self, *args: Any, **options: Any) -> None:
         exporting.remove_dead_partials()
         uploads.remove_leftovers()
+        unfinished.remove_abandoned(timezone.now())
         count = export_expiry.expire(timezone.now())
         days = settings.EXPORT_KEEP_DAYS
         kept = f"exports are kept for {days} days" if days else "exports are kept for ever"

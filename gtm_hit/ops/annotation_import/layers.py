@@ -13,6 +13,7 @@ from django.db import IntegrityError, transaction
 from gtm_hit.formats.problems import FormatError, Problem
 from gtm_hit.models import Annotation, Dataset, Frame, Layer
 from gtm_hit.ops.annotation_import import findings as sieve
+from gtm_hit.ops.annotation_import import unfinished
 from gtm_hit.ops.annotation_import.exported import part_of
 from gtm_hit.ops.annotation_import.findings import Findings, Kind
 from gtm_hit.ops.annotation_import.placing import place
@@ -62,7 +63,7 @@ def import_annotations(
     """Make a layer of annotation files.
 
     Raises ImportFailed with everything that is wrong or does not fit and is not to be dropped; then nothing
-    is imported. `confirm` is asked once before anything is written, `remember` told in its transaction.
+    is imported. `confirm` is asked once before the layer appears, `remember` told in that transaction.
     """
     findings = Findings(frozenset(source.drop))
     try:
@@ -73,21 +74,19 @@ def import_annotations(
         raise ImportFailed(_seen_from(source.path, findings.standing))
     if not len(people) and not people.empty:
         raise ImportFailed((Problem(source.path.name, "", "holds no annotation of this dataset"),))
-    confirm()
-    report(WRITING, 0, 1)
     frames = len(np.union1d(people.frames, np.array(people.empty, dtype=np.int64)))
-    try:
-        with transaction.atomic():
-            layer = Layer.objects.create(
-                dataset=dataset, name=source.layer, kind=Layer.Kind.IMPORTED, hidden=source.hidden
-            )
-            rows.add_annotations(layer, _told(_frames(people), frames, report))
-            done = LayerReport(layer, frames, len(np.unique(people.persons)), len(people), findings.dropped)
-            if remember:
-                remember(done)
-    except IntegrityError as error:
-        reason = "was made by somebody else in the meantime; choose another name"
-        raise ImportFailed((Problem(source.layer, "", reason),)) from error
+    with unfinished.layer(dataset, hidden=source.hidden) as layer:
+        rows.add_annotations(layer, _told(_frames(people), frames, report))
+        confirm()
+        done = LayerReport(layer, frames, len(np.unique(people.persons)), len(people), findings.dropped)
+        try:
+            with transaction.atomic():
+                unfinished.appear(layer, source.layer)
+                if remember:
+                    remember(done)
+        except IntegrityError as error:
+            reason = "was made by somebody else in the meantime; choose another name"
+            raise ImportFailed((Problem(source.layer, "", reason),)) from error
     return done
 
 

@@ -6,6 +6,8 @@ import uuid
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 
+from django.db import transaction
+
 from gtm_hit.geometry.camera import Camera as CalibratedCamera
 from gtm_hit.models import Annotation, Camera, Dataset, Frame, Image, Layer, LayerFrame, Save
 from gtm_hit.ops.images import Derivatives
@@ -64,7 +66,8 @@ def add_annotations(layer: Layer, imported: Iterable[ImportedFrame]) -> None:
     """Frames the layer does not have yet, each with its first save, done."""
     following = iter(imported)
     while together := list(islice(following, FRAMES_AT_ONCE)):
-        _add_annotations(layer, together)
+        with transaction.atomic():  # all who save wait for the end of it
+            _add_annotations(layer, together)
 
 
 def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
@@ -102,4 +105,4 @@ def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
         ),
     )
     largest = max((row["person"] for each in imported for row in each.rows), default=0)
-    Layer.objects.filter(pk=layer.pk, last_person__lt=largest).update(last_person=largest)
+    Layer.with_unfinished.filter(pk=layer.pk, last_person__lt=largest).update(last_person=largest)
