@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 import threading
 import time
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +18,7 @@ from django.test.utils import CaptureQueriesContext
 from gtm_hit.formats.problems import ProblemList
 from gtm_hit.models import Dataset
 from gtm_hit.ops.importing import pictures
+from gtm_hit.ops.importing.annotations import read_annotations
 from gtm_hit.ops.importing.dataset import import_dataset
 from gtm_hit.ops.importing.options import tell_too_many
 from gtm_hit.ops.importing.pictures import Picture, make_pictures
@@ -116,3 +119,17 @@ def test_only_images_of_the_frames_at_hand_are_compared(tmp_path: Path, settings
         if query["sql"].startswith("SELECT") and "source_digest" in query["sql"]
     ]
     assert "IN (10, 15)" in asked
+
+
+def test_a_person_to_be_imported_takes_a_few_numbers(tmp_path: Path) -> None:
+    views = [{"viewNum": 0, "xmin": 1000, "ymin": 1000, "xmax": 2000, "ymax": 2000}]
+    people = [{"personID": each + 1000, "positionID": each + 1000, "views": views} for each in range(500)]
+    paths = {number: tmp_path / f"{number:08d}.json" for number in range(20)}
+    for path in paths.values():
+        path.write_text(json.dumps(people))
+    tracemalloc.start()
+    read = read_annotations(paths, Dataset(), 1, lambda *_: None, ProblemList(""))
+    held, _most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert sum(map(len, read.frames)) == 10_000
+    assert held / 10_000 < 150  # bytes

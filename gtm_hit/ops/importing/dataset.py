@@ -17,7 +17,7 @@ from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Dataset, Frame, Image, Layer, LayerFrame
 from gtm_hit.ops.images import MOST_PIXELS, Derivatives
 from gtm_hit.ops.importing import rows
-from gtm_hit.ops.importing.annotations import ImportedFrame, compare_boxes, ignored_sizes, read_annotations
+from gtm_hit.ops.importing.annotations import ImportedFrame, compare_boxes, read_annotations
 from gtm_hit.ops.importing.calibrations import View, read_views, tell_differences, tell_wrong_unit
 from gtm_hit.ops.importing.options import PRESETS, ImportOptions, scene, tell_too_many
 from gtm_hit.ops.importing.pictures import Key, Picture, camera_sizes, discard, make_pictures
@@ -227,16 +227,16 @@ def _annotations(
         paths = {number: path for number, path in paths.items() if number not in known}
         if known:
             notes.append(f"{len(known)} annotation files are in layer {layer.name} already")
-    frames = read_annotations(
+    found = read_annotations(
         paths,
         dataset,
         len(layout.cameras),
         lambda done, total: progress("reading annotations", done, total),
         problems,
     )
-    if ignored := ignored_sizes(frames):
-        notes.append(f"height or radius of {ignored} people is not in metres and was ignored")
-    return frames
+    if found.ignored_sizes:
+        notes.append(f"height or radius of {found.ignored_sizes} people is not in metres and was ignored")
+    return found.frames
 
 
 def _make(
@@ -314,7 +314,7 @@ def _write(reading: Reading, made: Mapping[Key, Derivatives]) -> ImportReport:
         frames_added=len(reading.numbers),
         images_added=len(made),
         annotated_frames_added=len(reading.imported),
-        people_added=sum(len(frame.rows) for frame in reading.imported),
+        people_added=sum(map(len, reading.imported)),
         notes=reading.notes,
     )
 
