@@ -20,6 +20,7 @@ from gtm_hit.ops import (
     uploads,
 )
 from gtm_hit.ops.annotation_import import job as annotation_job
+from gtm_hit.ops.annotation_import import unfinished
 from gtm_hit.ops.calibration import job as calibration_job
 
 OPERATIONS: dict[str, jobs.Operation] = {
@@ -47,6 +48,7 @@ def requeue_lost_jobs() -> None:
 @shared_task
 def expire_exports() -> None:
     export_expiry.expire(timezone.now())
+    unfinished.remove_abandoned(timezone.now())
 
 
 @shared_task

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterator
 from dataclasses import asdict
+from itertools import islice
 from typing import Any
 
 from django.core.exceptions import PermissionDenied
@@ -16,11 +17,13 @@ from rest_framework import exceptions, status
 from rest_framework.response import Response
 from rest_framework.views import set_rollback
 
+from gtm_hit.formats.problems import MOST_PROBLEMS
 from gtm_hit.ops import assignments, tutorial
 from gtm_hit.ops.annotation_rules import InvalidFrame
 from gtm_hit.ops.annotations import SaveIdUsed, StaleSave, UnknownRevision
 
 log = logging.getLogger(__name__)
+MOST_QUOTED = 500
 
 CODES = {
     status.HTTP_400_BAD_REQUEST: "invalid",
@@ -81,7 +84,7 @@ def framework_answer(error: Exception) -> Response | None:
     if isinstance(error, exceptions.ParseError):
         code = "unreadable"
     if isinstance(error, exceptions.ValidationError):
-        problems = list(flattened(error.detail))
+        problems = list(islice(flattened(error.detail), MOST_PROBLEMS))
         response = answer(error.status_code, code, _("The request is not valid."), problems)
     else:
         response = answer(error.status_code, code, str(error.detail))
@@ -100,7 +103,8 @@ def flattened(detail: Any, place: str = "") -> Iterator[dict[str, str]]:
         for item in detail:
             yield from flattened(item, place)
     else:
-        yield {"place": place, "reason": str(detail)}
+        # Places and reasons quote the request, which may be a megabyte of one word.
+        yield {"place": place[:MOST_QUOTED], "reason": str(detail)[:MOST_QUOTED]}
 
 
 def unexpected_answer(error: Exception, context: dict[str, Any]) -> Response:

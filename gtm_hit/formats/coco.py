@@ -11,19 +11,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from gtm_hit.formats.coco_categories import Categories
 from gtm_hit.formats.delimited_text import MOST_WHOLE
 from gtm_hit.formats.files import read_source, replacing
+from gtm_hit.formats.json_lists import read_object
 from gtm_hit.formats.problems import ProblemList, shown
-from gtm_hit.formats.strict_json import parse_json
+from gtm_hit.formats.strict_json import json_text
 
 MOST_BYTES = 512 * 2**20
 CATEGORY = 1
-PERSON_NAMES = {"person", "pedestrian", "people", "human"}
 _PERSON_KEYS = ("person_id", "track_id")
 _FAR = 1e9  # pixels
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class CocoImage:
     """`frame` and `camera` are None where the file does not say; then `file_name` has to tell."""
 
@@ -35,7 +36,7 @@ class CocoImage:
     camera: int | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class CocoBox:
     """`box` is xmin, ymin, xmax, ymax in pixels, `image` the id of its image; ground truth has no `score`."""
 
@@ -55,7 +56,7 @@ class CocoFile:
 
 def read_coco(path: Path, repeated: bool = False) -> CocoFile:
     """Raises FormatError, as `parse_coco`."""
-    return parse_coco(read_source(path, MOST_BYTES), str(path), repeated)
+    return _parsed(json_text(read_source(path, MOST_BYTES), str(path)), str(path), repeated)
 
 
 def parse_coco(data: bytes, path: str, repeated: bool = False) -> CocoFile:
@@ -64,28 +65,50 @@ def parse_coco(data: bytes, path: str, repeated: bool = False) -> CocoFile:
     With `repeated`, people twice in an image are left to the caller.
 
     Raises FormatError with everything wrong: keys missing or of another type, ids used twice, boxes of no
-    image or without area, a person twice in an image.
+    image, of no category or without area, no category of people, a person twice in an image.
     """
+    return _parsed(json_text(data, path), path, repeated)
+
+
+def _parsed(text: str, path: str, repeated: bool) -> CocoFile:
     problems = ProblemList(path)
-    content = parse_json(data, path)
-    images = [_image(place, each, problems) for place, each in _entries(content, "images", problems)]
-    people = _person_categories(content)
-    boxes = [
-        _box(place, each, problems)
-        for place, each in _entries(content, "annotations", problems)
-        if people is None or each.get("category_id") in people
-    ]
-    _tell_repeated("images", [image.id for image in images], problems)
-    _tell_repeated("annotations", [box.id for box in boxes], problems)
+    images: list[CocoImage] = []
+    boxes: list[CocoBox] = []
+
+    def take_image(index: int, entry: Any) -> None:
+        if _is_object(entry, f"images[{index}]", problems):
+            images.append(_image(f"images[{index}]", entry, problems))
+
+    def take_box(index: int, entry: Any) -> None:
+        place = f"annotations[{index}]"
+        if _is_object(entry, place, problems) and categories.has_people(entry, place, problems):
+            boxes.append(_box(place, entry, problems))
+
+    # Twice, because most files name their categories last: only boxes of people are worth looking at.
+    content = read_object(text, path, {"images": take_image, "annotations": lambda _index, _entry: None})
+    for key in ("images", "annotations"):
+        if not isinstance(content.get(key), list):
+            problems.add("", f"has no list of {key}")
+    problems.raise_if_any()
+    categories = Categories.of(content.get("categories"))
+    read_object(text, path, {"images": lambda _index, _entry: None, "annotations": take_box})
+    _tell_wrong_ids(images, boxes, repeated, problems)
+    problems.raise_if_any()
+    return CocoFile(tuple(images), tuple(boxes))
+
+
+def _tell_wrong_ids(
+    images: list[CocoImage], boxes: list[CocoBox], repeated: bool, problems: ProblemList
+) -> None:
+    _tell_repeated("images", (image.id for image in images), problems)
+    _tell_repeated("annotations", (box.id for box in boxes), problems)
     if not repeated:
-        people_of_images = [(box.image, box.person) for box in boxes if box.person is not None]
+        people_of_images = ((box.image, box.person) for box in boxes if box.person is not None)
         _tell_repeated("images and people", people_of_images, problems)
     known = {image.id for image in images}
     for box in boxes:
         if box.image not in known:
             problems.add(f"annotation {box.id}", f"image_id {box.image} is no image of this file")
-    problems.raise_if_any()
-    return CocoFile(tuple(images), tuple(boxes))
 
 
 def write_coco(path: Path, images: Iterable[CocoImage], boxes: Iterable[CocoBox]) -> None:
@@ -143,24 +166,10 @@ def _given(**values: float | None) -> dict[str, Any]:
     return {key: value for key, value in values.items() if value is not None}
 
 
-def _entries(content: Any, key: str, problems: ProblemList) -> list[tuple[str, dict[str, Any]]]:
-    entries = content.get(key) if isinstance(content, dict) else None
-    if not isinstance(entries, list):
-        problems.add("", f"has no list of {key}")
-        return []
-    for index, entry in enumerate(entries):
-        if not isinstance(entry, dict):
-            problems.add(f"{key}[{index}]", f"is {shown(entry)} instead of an object")
-    return [(f"{key}[{index}]", entry) for index, entry in enumerate(entries) if isinstance(entry, dict)]
-
-
-def _person_categories(content: Any) -> list[Any] | None:
-    """Ids of the categories people are in; None when the file names no categories."""
-    categories = content.get("categories") if isinstance(content, dict) else None
-    if not isinstance(categories, list):
-        return None
-    named = [each for each in categories if isinstance(each, dict)]
-    return [each.get("id") for each in named if str(each.get("name")).lower() in PERSON_NAMES]
+def _is_object(entry: Any, place: str, problems: ProblemList) -> bool:
+    if not isinstance(entry, dict):
+        problems.add(place, f"is {shown(entry)} instead of an object")
+    return isinstance(entry, dict)
 
 
 def _image(place: str, entry: dict[str, Any], problems: ProblemList) -> CocoImage:
@@ -216,7 +225,7 @@ def _whole(
     return None
 
 
-def _tell_repeated(place: str, ids: list[Any], problems: ProblemList) -> None:
+def _tell_repeated(place: str, ids: Iterable[Any], problems: ProblemList) -> None:
     if problems:
         return  # what stands in for wrong ids would look like repetitions
     seen = set()

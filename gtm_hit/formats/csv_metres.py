@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -54,14 +55,14 @@ def parse_csv(data: bytes, path: str, repeated: bool = False) -> GroundPoints:
     number, names = next(rows, (1, []))
     names = [name.lower() for name in names]
     _check_names(names, number, problems)
-    numbers, values = [], []
+    numbers, values = array("q"), array("d")
     for number, words in rows:
         if len(words) != len(names):
             problems.add(f"line {number}", f"{len(words)} values instead of {len(names)} ({','.join(names)})")
             continue
         numbers.append(number)
-        values.append(_record(dict(zip(names, words, strict=True)), number, problems))
-    table = np.array(values, dtype=np.float64).reshape(-1, 5)
+        values.extend(_record(dict(zip(names, words, strict=True)), number, problems))
+    table = np.frombuffer(values, dtype=np.float64).reshape(-1, 5)
     frames, persons = table[:, 0].astype(np.int64), table[:, 1].astype(np.int64)
     if "person" in names and not repeated:
         tell_repeated(frames, persons, numbers, problems)
@@ -71,7 +72,7 @@ def parse_csv(data: bytes, path: str, repeated: bool = False) -> GroundPoints:
         table[:, 2:4],
         persons if "person" in names else None,
         table[:, 4] if "height" in names else None,
-        np.array(numbers, dtype=np.int64),
+        np.frombuffer(numbers, dtype=np.int64),
     )
 
 

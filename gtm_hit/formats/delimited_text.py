@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,24 +20,25 @@ _REAL = re.compile(r"[+-]?(?:[0-9]{1,40}(?:\.[0-9]{0,40})?|\.[0-9]{1,40})(?:[eE]
 
 def records(data: bytes) -> Iterator[tuple[int, list[str]]]:
     """Line numbers, counted from 1, and the values of every line that is not blank and no `#` comment."""
-    text = data.decode("utf-8-sig", "replace")
-    for number, line in enumerate(text.split("\n"), start=1):
+    # Line by line: a list of all lines takes several times the memory of the file.
+    lines = io.TextIOWrapper(io.BytesIO(data), "utf-8-sig", "replace", newline="\n")
+    for number, line in enumerate(lines, start=1):
         stripped = line.strip()
         if stripped and not stripped.startswith("#"):
             yield number, [word.strip().strip('"') for word in stripped.split(",")]
 
 
-def whole(word: str, name: str, least: int, number: int, problems: ProblemList) -> int:
+def whole(
+    word: str, name: str, least: int, number: int, problems: ProblemList, most: int = MOST_WHOLE
+) -> int:
     """An integer from `least` on, also as numpy writes it (`3.00e+00`); `least`, and told, if it is none."""
     if word.isascii() and word.isdigit() and len(word) < 10:
         value = float(word)
     else:
         value = float(word) if _REAL.fullmatch(word) else math.nan
-    if value.is_integer() and least <= value <= MOST_WHOLE:
+    if value.is_integer() and least <= value <= most:
         return int(value)
-    problems.add(
-        f"line {number}", f"{name} is {shown(word)} instead of an integer from {least} to {MOST_WHOLE}"
-    )
+    problems.add(f"line {number}", f"{name} is {shown(word)} instead of an integer from {least} to {most}")
     return least
 
 
@@ -56,7 +58,7 @@ def short(value: float) -> str:
 
 
 def tell_repeated(
-    frames: NDArray[np.int64], persons: NDArray[np.int64], numbers: list[int], problems: ProblemList
+    frames: NDArray[np.int64], persons: NDArray[np.int64], numbers: Sequence[int], problems: ProblemList
 ) -> None:
     """Every row whose person is already in its frame."""
     if problems:

@@ -6,13 +6,17 @@ with a comment after `#`; numbers may be written as numpy writes them (`3.000e+0
 
 from __future__ import annotations
 
+import io
 import re
+from array import array
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gtm_hit.formats.delimited_text import tell_repeated
 from gtm_hit.formats.files import read_source, write_bytes
 from gtm_hit.formats.problems import ProblemList, shown
 
@@ -45,22 +49,25 @@ def read(
     found nobody. With `repeated`, people twice in a frame are left to the caller.
     """
     problems = ProblemList(path)
-    found = [] if may_be_empty and _is_empty(path) else _lines(read_source(path, MOST_BYTES))
-    lengths = {len(words) for _, words in found}
-    if not (found or may_be_empty):
+    data = b"" if may_be_empty and _is_empty(path) else read_source(path, MOST_BYTES)
+    lengths = {len(words) for _, words in _lines(data)}
+    if not (lengths or may_be_empty):
         problems.add("", "holds no `frame column row` line")
     if persons and lengths == {3}:
         problems.add("", "no line has a person, the fourth value")
         problems.raise_if_any()
     expected = 4 if persons or lengths == {4} else 3
-    values = [_values(number, words, expected, problems) for number, words in found]
+    numbers, values = array("q"), array("q")
+    for number, words in _lines(data):
+        numbers.append(number)
+        values.extend(_values(number, words, expected, problems))
+    table = np.frombuffer(values, dtype=np.int64).reshape(-1, expected)
     identified = expected == 4 and persons is not False
     if identified and not repeated:
-        _report_repeated(found, values, problems)
+        tell_repeated(table[:, 0], table[:, 3], numbers, problems)
     problems.raise_if_any()
-    table = np.array(values, dtype=np.int64).reshape(-1, expected)
-    numbers = np.array([number for number, _ in found], dtype=np.int64)
-    return FrameColumnRow(table[:, 0], table[:, 1], table[:, 2], table[:, 3] if identified else None, numbers)
+    places = np.frombuffer(numbers, dtype=np.int64)
+    return FrameColumnRow(table[:, 0], table[:, 1], table[:, 2], table[:, 3] if identified else None, places)
 
 
 def write(path: Path, table: FrameColumnRow) -> None:
@@ -80,14 +87,16 @@ def _is_empty(path: Path) -> bool:
         return False  # whoever reads it says what is wrong
 
 
-def _lines(data: bytes) -> list[tuple[int, list[bytes]]]:
+def _lines(data: bytes) -> Iterator[tuple[int, list[bytes]]]:
     """Line numbers, counted from 1, and the words of every line that has any."""
-    found = []
-    for number, line in enumerate(data.removeprefix(b"\xef\xbb\xbf").splitlines(), start=1):
-        words = line.partition(b"#")[0].split()
-        if words:
-            found.append((number, words))
-    return found
+    number = 0
+    for together in io.BytesIO(data.removeprefix(b"\xef\xbb\xbf")):
+        # Lines may end with a carriage return alone, too.
+        for line in together.splitlines():
+            number += 1
+            words = line.partition(b"#")[0].split()
+            if words:
+                yield number, words
 
 
 def _values(number: int, words: list[bytes], expected: int, problems: ProblemList) -> list[int]:
@@ -108,15 +117,3 @@ def _whole(place: str, name: str, word: bytes, problems: ProblemList) -> int:
     text = shown(word.decode("ascii", "backslashreplace"))
     problems.add(place, f"{name} is not a whole number from 0 to {MOST}: {text}")
     return 0
-
-
-def _report_repeated(
-    lines: list[tuple[int, list[bytes]]], values: list[list[int]], problems: ProblemList
-) -> None:
-    if problems:
-        return  # placeholders of bad lines would look like repetitions
-    first: dict[tuple[int, int], int] = {}
-    for (number, _), (frame, _column, _row, person) in zip(lines, values, strict=True):
-        earlier = first.setdefault((frame, person), number)
-        if earlier != number:
-            problems.add(f"line {number}", f"person {person} is already in frame {frame} on line {earlier}")

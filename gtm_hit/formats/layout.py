@@ -112,7 +112,9 @@ def _images(dataset: DatasetFolder, chosen: Path | None) -> dict[str, dict[int, 
     candidates = [dataset.root / name for name in (IMAGE_FOLDERS if chosen is None else [chosen])]
     folder = next((path for path in candidates if path.is_dir()), None)
     if folder is None:
-        dataset.problems.add("", "no such folder of images", " or ".join(map(str, candidates)))
+        # Seen from the folder: only one path at the front is made shorter where a message goes out.
+        others = (str(each.relative_to(dataset.root)) for each in candidates[1:])
+        dataset.problems.add("", "no such folder of images", " or ".join([str(candidates[0]), *others]))
         return {}
     if chosen is not None and not folder.resolve().is_relative_to(dataset.root):
         # Whoever runs the import may keep images on another disk; what is in there may not lead further.

@@ -10,6 +10,7 @@ its number among the dataset's frame numbers. Pixels are not shifted: `left` is 
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,11 +18,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gtm_hit.formats.delimited_text import real, records, short, tell_repeated, whole
+from gtm_hit.formats.delimited_text import MOST_WHOLE, real, records, short, tell_repeated, whole
 from gtm_hit.formats.files import read_source, replacing
 from gtm_hit.formats.problems import ProblemList
 
 MOST_BYTES = 512 * 2**20
+MOST_ID = MOST_WHOLE + 1  # of the largest person
 _NAMES = ("frame", "id", "left", "top", "width", "height", "confidence")
 _TRUTH_NAMES = (*_NAMES, "class", "visibility")
 _WORLD_NAMES = (*_NAMES, "x", "y", "z")
@@ -62,8 +64,7 @@ def parse_mot(data: bytes, path: str, numbers: Sequence[int], repeated: bool = F
     not have, ids below 1 other than -1, boxes without area, neither box nor place, a person twice in a frame.
     """
     problems = ProblemList(path)
-    lines: list[int] = []
-    values: list[tuple[float, ...]] = []
+    lines, values = array("q"), array("d")
     names: tuple[str, ...] = ()
     for line, words in records(data):
         names = names or _LAYOUTS.get(len(words), ())
@@ -72,8 +73,8 @@ def parse_mot(data: bytes, path: str, numbers: Sequence[int], repeated: bool = F
             problems.add(f"line {line}", f"{len(words)} values instead of {wanted}")
             continue
         lines.append(line)
-        values.append(_row(dict(zip(names, words, strict=True)), line, numbers, problems))
-    table = np.array(values, dtype=np.float64).reshape(-1, 10)
+        values.extend(_row(dict(zip(names, words, strict=True)), line, numbers, problems))
+    table = np.frombuffer(values, dtype=np.float64).reshape(-1, 10)
     frames, persons = table[:, 0].astype(np.int64), table[:, 1].astype(np.int64)
     identified = bool((persons >= 0).any())
     if identified and not problems:  # what stands in for wrong ids is -1 too
@@ -88,7 +89,7 @@ def parse_mot(data: bytes, path: str, numbers: Sequence[int], repeated: bool = F
         _unless_all_missing(table[:, 2:6]),
         table[:, 6],
         _unless_all_missing(table[:, 7:10]),
-        np.array(lines, dtype=np.int64),
+        np.frombuffer(lines, dtype=np.int64),
     )
 
 
@@ -134,7 +135,7 @@ def _row(
     frame = whole(values["frame"], "frame", 1, line, problems)
     if frame > len(numbers):
         problems.add(f"line {line}", f"frame {frame} is not one of the dataset's {len(numbers)}")
-    person = whole(values["id"], "id", -1, line, problems)
+    person = whole(values["id"], "id", -1, line, problems, most=MOST_ID)
     if person == 0:
         problems.add(f"line {line}", "id is 0, but ids count from 1")
     left, top, width, height = (real(values[name], name, line, problems) for name in _NAMES[2:6])
@@ -154,7 +155,7 @@ def _row(
 
 
 def _unless_all_missing(columns: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    return None if np.isnan(columns).all() else columns
+    return None if len(columns) and np.isnan(columns).all() else columns
 
 
 def _columns(table: MotTable, frames: list[str]) -> list[list[str]]:

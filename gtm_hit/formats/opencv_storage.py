@@ -10,6 +10,7 @@ import math
 import re
 from dataclasses import dataclass, field
 
+from defusedxml.common import DefusedXmlException  # type: ignore[import-untyped]
 from defusedxml.ElementTree import fromstring  # type: ignore[import-untyped]
 
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList, shown
@@ -95,6 +96,10 @@ def _parse_xml(data: bytes, path: str) -> list[StoredNode]:
         raise FormatError([Problem(path, "", "XML with namespaces is not a calibration file")])
     try:
         root = fromstring(text, forbid_dtd=True)
+    except DefusedXmlException as error:
+        raise FormatError(
+            [Problem(path, "", "not XML that can be read: it has a DTD or entities")]
+        ) from error
     except (SyntaxError, ValueError, LookupError) as error:
         raise FormatError([Problem(path, "", f"not XML that can be read: {shown(str(error))}")]) from error
     nodes = []

@@ -16,6 +16,11 @@ class Problem:
     place: str
     reason: str
 
+    def __post_init__(self) -> None:
+        # Names in archives may hold signs that a terminal obeys.
+        for name in ("path", "place", "reason"):
+            object.__setattr__(self, name, plain(getattr(self, name)))
+
     def __str__(self) -> str:
         return ": ".join(part for part in (self.path, self.place, self.reason) if part)
 
@@ -66,6 +71,16 @@ class ProblemList:
 def shown(value: object) -> str:
     """A value as it may stand in a message: short, one line, plain characters."""
     return _SHORT.repr(value)
+
+
+def plain(text: str) -> str:
+    """The text on one line, with what is no sign one sees written out."""
+    if text.isprintable():
+        return text
+    return "".join(
+        sign if sign.isprintable() else sign.encode("unicode_escape", "backslashreplace").decode()
+        for sign in text
+    )
 
 
 class _Short(reprlib.Repr):

@@ -18,6 +18,14 @@ def parse_json(data: bytes, path: str) -> Any:
         raise FormatError([Problem(path, "", f"not JSON that can be read: {shown(str(error))}")]) from error
 
 
+def json_text(data: bytes, path: str) -> str:
+    """The text of a JSON file in any of the encodings JSON knows. Raises FormatError."""
+    try:
+        return data.decode(json.detect_encoding(data))
+    except ValueError as error:
+        raise FormatError([Problem(path, "", f"not JSON that can be read: {shown(str(error))}")]) from error
+
+
 def _refuse_constant(word: str) -> None:
     raise ValueError(f"{word} is not a number")
 
@@ -27,3 +35,6 @@ def _finite(word: str) -> float:
     if not math.isfinite(value):
         raise ValueError(f"{word[:40]} is too large")
     return value
+
+
+DECODER = json.JSONDecoder(parse_constant=_refuse_constant, parse_float=_finite)

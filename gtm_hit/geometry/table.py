@@ -175,14 +175,16 @@ def _compute(
     progress: Steps | None,
 ) -> None:
     """Fill boxes (cameras, rows, columns, 4), with a thread per core: numpy lets go of the lock."""
-    columns = np.arange(grid.columns)[None, :]
-    rows_together = max(1, BLOCK // grid.columns)
+    columns_together = min(grid.columns, BLOCK)  # one row of a long grid may be all of it
+    rows_together = max(1, BLOCK // columns_together)
 
     def part(number: int, start: int, stop: int) -> None:
         for first in range(start, stop, rows_together):
             rows = np.arange(first, min(first + rows_together, stop))[:, None]
-            block = boxes[number, first : first + rows.size]
-            fill_block(cameras[number], grid, cylinder, rule, columns, rows, block)
+            for left in range(0, grid.columns, columns_together):
+                columns = np.arange(left, min(left + columns_together, grid.columns))[None, :]
+                block = boxes[number, first : first + rows.size, left : left + columns.size]
+                fill_block(cameras[number], grid, cylinder, rule, columns, rows, block)
 
     share = math.ceil(grid.rows / TASKS_PER_CAMERA)
     parts = [

@@ -17,6 +17,13 @@ class AppendOnlyError(TypeError):
     """A row of history was about to be changed or deleted."""
 
 
+class FinishedLayers(models.Manager["Layer"]):
+    """Without those an import is still filling."""
+
+    def get_queryset(self) -> models.QuerySet[Layer]:
+        return super().get_queryset().filter(unfinished=False)
+
+
 class Layer(models.Model):
     """A set of annotations with one author; everything that compares, copies or exports takes layers."""
 
@@ -31,10 +38,16 @@ class Layer(models.Model):
     name = models.CharField(max_length=120, validators=[name_validator])
     kind = models.CharField(max_length=20, choices=Kind.choices)
     hidden = models.BooleanField(default=False, help_text="never shown to workers (known truth, gold)")
+    unfinished = models.BooleanField(
+        default=False, editable=False, help_text="an import is filling it; nobody sees it yet"
+    )
     last_person = models.PositiveIntegerField(
         default=0, editable=False, help_text="largest person number any save has used"
     )
     created_at = models.DateTimeField(auto_now_add=True)
+
+    objects = FinishedLayers()
+    with_unfinished: models.Manager[Layer] = models.Manager()
 
     class Meta:
         ordering = ["dataset", "name"]

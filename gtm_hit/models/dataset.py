@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from django.core.validators import MinValueValidator, RegexValidator
+from django.core.validators import MaxValueValidator, MinValueValidator, RegexValidator
 from django.db import models
 from django.db.models import Q
 
@@ -16,20 +16,29 @@ name_validator = RegexValidator(
 )
 
 
+# Generous; what lies beyond is a slip that divisions by it would turn into infinity.
+STEP = [MinValueValidator(0.001), MaxValueValidator(100)]
+ORIGIN = [MinValueValidator(-1e6), MaxValueValidator(1e6)]
+SIZE = [MinValueValidator(0.01), MaxValueValidator(10)]
+RATE = [MinValueValidator(0.001), MaxValueValidator(1000)]
+
+
 class Dataset(models.Model):
     slug = models.SlugField(max_length=80, unique=True)
     name = models.CharField(max_length=200)
     columns = models.PositiveIntegerField(default=480, validators=[MinValueValidator(1)])
     rows = models.PositiveIntegerField(default=1440, validators=[MinValueValidator(1)])
-    step = models.FloatField(default=0.025, help_text="metres between neighbouring positions")
-    origin_x = models.FloatField(default=-3.0, help_text="metres")
-    origin_y = models.FloatField(default=-9.0, help_text="metres")
-    cylinder_radius = models.FloatField(default=0.16, help_text="metres")
-    cylinder_height = models.FloatField(default=1.80, help_text="metres")
+    step = models.FloatField(
+        default=0.025, validators=STEP, help_text="metres between neighbouring positions"
+    )
+    origin_x = models.FloatField(default=-3.0, validators=ORIGIN, help_text="metres")
+    origin_y = models.FloatField(default=-9.0, validators=ORIGIN, help_text="metres")
+    cylinder_radius = models.FloatField(default=0.16, validators=SIZE, help_text="metres")
+    cylinder_height = models.FloatField(default=1.80, validators=SIZE, help_text="metres")
     foot_rule = models.CharField(
         max_length=10, choices=[(rule.value, rule.value) for rule in FootRule], default=FootRule.CORNERS.value
     )
-    frame_rate = models.FloatField(default=10.0, help_text="frame numbers per second")
+    frame_rate = models.FloatField(default=10.0, validators=RATE, help_text="frame numbers per second")
     frame_step = models.PositiveIntegerField(default=5, help_text="annotate every n-th frame number")
     annotation_offset = models.IntegerField(
         default=0, help_text="annotation file number minus frame number (MultiviewX: 1)"

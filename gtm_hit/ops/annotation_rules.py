@@ -8,6 +8,7 @@ from typing import Any
 
 from django.utils.translation import gettext as _
 
+from gtm_hit.formats.problems import MOST_PROBLEMS, shown
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.models import Annotation
 
@@ -27,6 +28,16 @@ class FrameProblem:
     reason: str
 
 
+class FrameProblems(list[FrameProblem]):
+    """Collects what is wrong; gives up at once when there is too much to be worth listing."""
+
+    def tell(self, place: str, reason: str) -> None:
+        if len(self) == MOST_PROBLEMS:
+            reason = _("more than %(count)d problems, the rest is not listed") % {"count": MOST_PROBLEMS}
+            raise InvalidFrame([*self, FrameProblem("annotations", reason)])
+        self.append(FrameProblem(place, reason))
+
+
 class InvalidFrame(ValueError):
     """A frame that cannot be saved; `problems` lists everything that is wrong with it."""
 
@@ -39,19 +50,19 @@ def checked(
     annotations: object, grid: Grid, *, done: bool, nobody: bool, seconds: object
 ) -> tuple[list[Row], float]:
     """The annotations by person, every key present, and the seconds; raises InvalidFrame."""
-    problems: list[FrameProblem] = []
+    problems = FrameProblems()
     rows: list[Row] = []
     if not isinstance(annotations, Sequence) or isinstance(annotations, str | bytes):
-        problems.append(FrameProblem("annotations", _("must be a list")))
+        problems.tell("annotations", _("must be a list"))
     elif len(annotations) > MAX_PEOPLE:
         reason = _("at most %(count)d people fit in a frame") % {"count": MAX_PEOPLE}
-        problems.append(FrameProblem("annotations", reason))
+        problems.tell("annotations", reason)
     else:
         for index, annotation in enumerate(annotations):
             rows.append(checked_row(annotation, f"annotations[{index}]", grid, problems))
-        problems += person_problems(rows)
+        tell_repeated(rows, problems)
     if not is_number(seconds, 0, MAX_SECONDS):
-        problems.append(FrameProblem("seconds", _("must be a number of seconds within one day")))
+        problems.tell("seconds", _("must be a number of seconds within one day"))
     if not problems:
         problems += done_problems(rows, done=done, nobody=nobody)
     if problems:
@@ -59,17 +70,17 @@ def checked(
     return sorted(rows, key=lambda row: row["person"]), float(seconds)  # type: ignore[arg-type]
 
 
-def checked_row(annotation: object, place: str, grid: Grid, problems: list[FrameProblem]) -> Row:
+def checked_row(annotation: object, place: str, grid: Grid, problems: FrameProblems) -> Row:
     if not isinstance(annotation, Mapping):
-        problems.append(FrameProblem(place, _("must be an object")))
+        problems.tell(place, _("must be an object"))
         return {"person": None}
     for key in annotation.keys() - {"person", "position", "state", "origin", "height", "radius"}:
-        # ascii(): a lone surrogate from the sender must not break the answer.
-        problems.append(FrameProblem(place, _("unknown key %(key)s") % {"key": ascii(key)}))
+        # shown(): a lone surrogate or a megabyte from the sender must not break the answer.
+        problems.tell(place, _("unknown key %(key)s") % {"key": shown(key)})
 
     def check(key: str, fine: bool, reason: str) -> None:
         if not fine:
-            problems.append(FrameProblem(f"{place}.{key}", reason))
+            problems.tell(f"{place}.{key}", reason)
 
     person, position = annotation.get("person"), annotation.get("position")
     state = annotation.get("state", Annotation.State.VALIDATED.value)
@@ -95,18 +106,16 @@ def checked_row(annotation: object, place: str, grid: Grid, problems: list[Frame
     }
 
 
-def person_problems(rows: list[Row]) -> list[FrameProblem]:
+def tell_repeated(rows: list[Row], problems: FrameProblems) -> None:
     seen: set[int] = set()
-    problems = []
     for index, row in enumerate(rows):
         person = row["person"]
         if not is_whole(person, MAX_PERSON):
             continue
         if person in seen:
             reason = _("person %(person)d is already in this frame") % {"person": person}
-            problems.append(FrameProblem(f"annotations[{index}].person", reason))
+            problems.tell(f"annotations[{index}].person", reason)
         seen.add(person)
-    return problems
 
 
 def done_problems(rows: list[Row], *, done: bool, nobody: bool) -> list[FrameProblem]:

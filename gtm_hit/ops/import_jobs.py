@@ -141,8 +141,10 @@ def _or_problems(work: Callable[[], dict[str, Any]], consequence: str) -> dict[s
 
 
 def told(problems: tuple[Problem, ...], consequence: str) -> str:
+    """Without where this server keeps its data: what is read has no other place for whoever asked."""
     count = f"{len(problems)} problem{'s' * (len(problems) > 1)}; {consequence}:"
-    return "\n".join([count, *map(str, problems)])
+    lines = FormatError(problems).relative_to(settings.DATA_DIR).problems
+    return "\n".join([count, *map(str, lines)])
 
 
 def _source(mine: jobs.Run) -> uploads.Source:

@@ -162,7 +162,9 @@ def jobs() -> QuerySet[Job]:
 
 def _summaries(found: QuerySet[Dataset]) -> list[DatasetSummary]:
     frames = Frame.objects.filter(dataset=OuterRef("pk")).order_by("number")
-    finished = LayerFrame.objects.filter(layer__dataset=OuterRef("pk"), layer__hidden=False, done=True)
+    finished = LayerFrame.objects.filter(
+        layer__dataset=OuterRef("pk"), layer__hidden=False, layer__unfinished=False, done=True
+    )
     rows = list(
         found.annotate(
             camera_count=_count(Camera.objects.filter(dataset=OuterRef("pk")), "dataset", "pk"),

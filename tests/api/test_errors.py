@@ -38,6 +38,16 @@ def test_json_of_another_shape_is_invalid(alice: Caller, content: str) -> None:
     assert not Save.objects.exists()
 
 
+@pytest.mark.parametrize(
+    "annotations",
+    [[{f"{number:012d}": 1 for number in range(40_000)}], [{"x" * 900_000: 1}], [3] * 501, [{}] * 500],
+)
+def test_a_megabyte_of_nonsense_gets_a_short_answer(alice: Caller, annotations: list[Any]) -> None:
+    response = alice.put(FRAME, body(people=annotations))
+    assert response.status_code == 400
+    assert len(response.content) < 50_000
+
+
 def test_other_formats_are_refused(alice: Caller) -> None:
     assert code(send(alice, "a=1", "application/x-www-form-urlencoded")) == (415, "unsupported_media_type")
 

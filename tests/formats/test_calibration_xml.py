@@ -260,6 +260,11 @@ def test_entities_are_refused() -> None:
     assert "not XML that can be read" in reasons(bomb, parse_extrinsic)[0]
 
 
+def test_a_document_type_is_told_in_words() -> None:
+    (told,) = reasons(b'<!DOCTYPE name SYSTEM "x.dtd"><a/>', parse_extrinsic)
+    assert told.endswith("not XML that can be read: it has a DTD or entities")
+
+
 def test_external_entities_are_refused() -> None:
     data = b'<!DOCTYPE a [<!ENTITY b SYSTEM "file:///etc/hostname">]><a><rvec>&b;</rvec></a>'
     assert "not XML that can be read" in reasons(data, parse_extrinsic)[0]

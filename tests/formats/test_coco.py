@@ -53,6 +53,37 @@ def test_boxes_of_other_categories_are_left_out() -> None:
     assert parse(value).boxes == ()
 
 
+@pytest.mark.parametrize(
+    ("categories", "there"),
+    [
+        ([], "none"),
+        ([{"id": 1, "name": "worker"}], "worker"),
+        ([{"id": 1, "name": "persons"}, {"id": 2, "name": "行人"}], "persons, 行人"),
+    ],
+)
+def test_without_a_category_of_people_the_categories_are_named(categories: list[Any], there: str) -> None:
+    reason = f"no category is one of person, pedestrian, people, human; there are: {there}"
+    assert problems_of(lambda one: one.update(categories=categories)) == [f"a.json: {reason}"]
+
+
+@pytest.mark.parametrize("name", [" Person ", "PEDESTRIAN", "human"])
+def test_people_are_found_whatever_the_case_and_spaces_of_their_category(name: str) -> None:
+    assert len(parse({**content(), "categories": [{"id": 1, "name": name}]}).boxes) == 1
+
+
+def test_ids_of_categories_may_be_texts() -> None:
+    assert len(parse({**content(), "categories": [{"id": "1", "name": "person"}]}).boxes) == 1
+
+
+def test_a_box_of_a_category_that_is_not_there_is_told() -> None:
+    told = problems_of(lambda one: one["annotations"][0].update(category_id=3))
+    assert told == ["a.json: annotations[0]: category_id 3 is no category of this file"]
+
+
+def test_without_boxes_no_category_is_asked_for() -> None:
+    assert parse({**content(), "annotations": [], "categories": []}).boxes == ()
+
+
 def test_without_categories_every_box_is_a_person() -> None:
     value = content()
     del value["categories"]

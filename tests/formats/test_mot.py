@@ -39,6 +39,14 @@ def test_ground_truth_of_a_view_is_read_in_our_numbers() -> None:
     assert table.lines is not None and table.lines.tolist() == [1, 2]
 
 
+def test_the_largest_person_comes_back(tmp_path: Path) -> None:
+    write_mot(tmp_path / "gt.txt", [parse("1,2147483647,1,2,3,4,1,1,1\n")], NUMBERS)
+    largest = parse((tmp_path / "gt.txt").read_text().replace("2147483647", "2147483648"))
+    assert largest.persons is not None and largest.persons.tolist() == [2**31 - 1]
+    write_mot(tmp_path / "gt.txt", [largest], NUMBERS)
+    assert read_mot(tmp_path / "gt.txt", NUMBERS).persons == largest.persons
+
+
 def test_detections_have_no_identities() -> None:
     table = parse("1,-1,1,2,3,4,0.75,-1,-1,-1\n")
     assert table.persons is None

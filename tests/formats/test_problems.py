@@ -48,3 +48,8 @@ def test_a_value_is_shown_short_on_one_plain_line(value: object) -> None:
     text = shown(value)
     assert len(text) < 120
     assert text.isascii() and text.isprintable()
+
+
+def test_signs_a_terminal_obeys_are_written_out() -> None:
+    problem = Problem("a\x1b[2J.zip", "b\nc", "d\x07 – größer\ud800")
+    assert str(problem) == r"a\x1b[2J.zip: b\nc: d\x07 – größer\ud800"

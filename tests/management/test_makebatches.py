@@ -27,7 +27,7 @@ def test_the_size_can_be_chosen(db: None) -> None:
 
 
 def test_an_unknown_dataset_is_named(db: None) -> None:
-    with pytest.raises(CommandError, match="'nowhere'"):
+    with pytest.raises(CommandError, match="no dataset nowhere; there are: none"):
         run("nowhere")
 
 

@@ -39,7 +39,7 @@ def test_a_personal_link_names_its_worker_and_creates_nothing(dataset: Dataset) 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["nowhere"], "'nowhere'"),
+        (["nowhere"], "no dataset nowhere; there are: square"),
         (["square", "--platform", "my panel"], "'my panel'"),
         (["square", "--platform", "p" * 41], "at most 40"),
         (["square", "--worker", "x" * 256], "255 characters"),

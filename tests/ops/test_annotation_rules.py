@@ -125,3 +125,13 @@ def test_the_order_they_are_sent_in_does_not_matter(rows: list[dict[str, Any]], 
     assert checked(shuffled, GRID, done=False, nobody=False, seconds=0)[0] == sorted(
         rows, key=lambda one: one["person"]
     )
+
+
+def test_too_many_problems_are_not_all_listed_and_long_words_not_quoted() -> None:
+    keys = {f"{number:060d}": 1 for number in range(60_000)}
+    with pytest.raises(InvalidFrame) as caught:
+        checked([{**row(), **keys}], GRID, done=False, nobody=False, seconds=0)
+    problems = caught.value.problems
+    assert len(problems) == 201
+    assert problems[-1].reason == "more than 200 problems, the rest is not listed"
+    assert max(len(problem.reason) for problem in problems) < 100

@@ -86,6 +86,14 @@ def test_what_is_dropped_by_name_stays_out_and_all_else_comes_in(dataset: Datase
     assert report.dropped == {Kind.OUTSIDE: 2, Kind.UNKNOWN_FRAMES: 1, Kind.DUPLICATES: 1}
 
 
+def test_what_does_not_fit_is_listed_up_to_a_limit_and_dropped_without(
+    dataset: Dataset, tmp_path: Path
+) -> None:
+    path = text(tmp_path / "people.txt", "5 40 30 7", *(f"5 99 99 {person}" for person in range(8, 400)))
+    assert refused(dataset, path, "text")[200:] == ["more than 200 problems, the rest is not listed"]
+    assert take_in(dataset, path, "text", "back", Kind.OUTSIDE).dropped == {Kind.OUTSIDE: 392}
+
+
 def test_dropping_one_kind_does_not_drop_another(dataset: Dataset, tmp_path: Path) -> None:
     path = text(tmp_path / "people.txt", "5 40 30 7", "6 40 30 7", "5 80 30 8")
     assert refused(dataset, path, "text", Kind.OUTSIDE) == [

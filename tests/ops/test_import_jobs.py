@@ -81,6 +81,22 @@ def test_a_failed_import_lists_everything_and_keeps_the_upload(tmp_path: Path) -
     assert [path.name for path in (tmp_path / "uploads").iterdir()] == ["square.zip"]
 
 
+@pytest.mark.parametrize("gone", ["", "Image_subsets", "calibrations", "annotations_positions"])
+def test_no_message_tells_where_the_server_keeps_its_data(tmp_path: Path, settings: Any, gone: str) -> None:
+    (tmp_path / "link").symlink_to(tmp_path)
+    settings.DATA_DIR, settings.UPLOADS_ROOT = tmp_path / "link", tmp_path / "link" / "uploads"
+    folder = make_folder(tmp_path / "square")
+    (folder / "annotations_positions" / "00000005.json").write_text("damaged")
+    shutil.move(folder / gone, tmp_path / "elsewhere") if gone else None
+    (tmp_path / "uploads").mkdir()
+    zipped(folder, tmp_path / "uploads" / "square.zip", below="d")
+    named = {"annotations": "annotations_positions"} if gone == "annotations_positions" else {}
+    parameters = {"source": "uploads/square.zip", "options": {**options(), **named}}
+    job = done(jobs.create(Job.Kind.IMPORT_DATASET, None, parameters))
+    assert job.state == Job.State.FAILED and gone in job.message
+    assert str(tmp_path) not in job.message
+
+
 def test_trying_again_uses_the_same_upload(archive: uploads.Source) -> None:
     failed = done(import_jobs.start_import(archive, options(preset="multiviewx", values={"columns": 3})))
     assert failed.state == Job.State.FAILED

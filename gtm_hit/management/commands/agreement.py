@@ -7,6 +7,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError
 
+from gtm_hit.management.lookups import dataset_named
 from gtm_hit.metrics.matching import RADIUS
 from gtm_hit.models import Dataset
 from gtm_hit.ops.quality.agreement import BatchAgreement, as_numbers, batch_agreements, shared_batches
@@ -25,9 +26,7 @@ class Command(BaseCommand):
         parser.add_argument("--json", action="store_true", help="print one object per batch and line")
 
     def handle(self, *, slug: str, radius: float, **options: Any) -> None:
-        dataset = Dataset.objects.filter(slug=slug).first()
-        if dataset is None:
-            raise CommandError(f"no dataset {slug}")
+        dataset = dataset_named(slug)
         if not radius > 0:
             raise CommandError(f"--radius must be a positive number of metres, not {radius}")
         for found in _all(dataset, radius):

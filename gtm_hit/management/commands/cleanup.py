@@ -7,6 +7,7 @@ from django.core.management.base import BaseCommand
 from django.utils import timezone
 
 from gtm_hit.ops import export_expiry, exporting, picture_cleanup, uploads
+from gtm_hit.ops.annotation_import import unfinished
 
 
 class Command(BaseCommand):
@@ -20,6 +21,7 @@ class Command(BaseCommand):
         exporting.remove_dead_partials()
         uploads.remove_leftovers()
         pictures = picture_cleanup.remove_unused_pictures(timezone.now())
+        unfinished.remove_abandoned(timezone.now())
         count = export_expiry.expire(timezone.now())
         days = settings.EXPORT_KEEP_DAYS
         kept = f"exports are kept for {days} days" if days else "exports are kept for ever"

@@ -6,7 +6,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError
 
-from gtm_hit.management.layers import layer_named
+from gtm_hit.management.lookups import layer_named
 from gtm_hit.metrics.matching import RADIUS
 from gtm_hit.ops.quality.comparing import Scope, as_numbers, compare, frame_lines
 from gtm_hit.ops.quality.layer_rows import QualityError

@@ -6,8 +6,8 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError
 
+from gtm_hit.management.lookups import layer_named
 from gtm_hit.management.progress import ProgressLine
-from gtm_hit.models import Layer
 from gtm_hit.ops import exporting
 from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, FORMATS, chosen
 
@@ -29,10 +29,7 @@ class Command(BaseCommand):
         )
 
     def handle(self, *, slug: str, layer: str, folder: Path, formats: list[str], **options: Any) -> None:
-        found = Layer.objects.select_related("dataset").filter(dataset__slug=slug, name=layer).first()
-        if found is None:
-            names = ", ".join(Layer.objects.filter(dataset__slug=slug).values_list("name", flat=True))
-            raise CommandError(f"no layer {layer} in dataset {slug}; there are: {names or 'none'}")
+        found = layer_named(slug, layer)
         folder = folder.absolute()
         progress = ProgressLine(self.stderr)
         try:

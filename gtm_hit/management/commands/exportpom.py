@@ -7,8 +7,8 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError
 
 from gtm_hit.formats.pom import PomHeader, write_pom
+from gtm_hit.management.lookups import dataset_named
 from gtm_hit.management.progress import ProgressLine
-from gtm_hit.models import Dataset
 from gtm_hit.ops.coverage import table
 
 
@@ -22,10 +22,7 @@ class Command(BaseCommand):
         )
 
     def handle(self, *, slug: str, file: Path, **options: Any) -> None:
-        dataset = Dataset.objects.filter(slug=slug).first()
-        if dataset is None:
-            slugs = ", ".join(Dataset.objects.values_list("slug", flat=True))
-            raise CommandError(f"no dataset {slug}; there are: {slugs or 'none'}")
+        dataset = dataset_named(slug)
         progress = ProgressLine(self.stderr)
         rectangles = table(dataset, lambda done, total: progress("rectangle table", done, total))
         header = PomHeader(dataset.grid, dataset.cylinder, rectangles.cameras_count)

@@ -8,8 +8,8 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError
 
+from gtm_hit.management.lookups import dataset_named
 from gtm_hit.management.progress import ProgressLine
-from gtm_hit.models import Dataset
 from gtm_hit.ops.annotation_import.findings import Kind
 from gtm_hit.ops.annotation_import.layers import AnnotationSource, import_annotations
 from gtm_hit.ops.annotation_import.reading import READERS
@@ -37,10 +37,7 @@ class Command(BaseCommand):
         )
 
     def handle(self, *, slug: str, path: Path, **options: Any) -> None:
-        dataset = Dataset.objects.filter(slug=slug).first()
-        if dataset is None:
-            slugs = ", ".join(Dataset.objects.values_list("slug", flat=True))
-            raise CommandError(f"no dataset {slug}; there are: {slugs or 'none'}")
+        dataset = dataset_named(slug)
         source = AnnotationSource(
             path.absolute(), options["format"], options["layer"], options["hidden_layer"], options["drop"]
         )

@@ -8,11 +8,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from django.core.management.base import BaseCommand, CommandError, CommandParser
+from django.core.management.base import CommandError, CommandParser
 
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.geometry.cylinder import FootRule
 from gtm_hit.management.progress import ProgressLine
+from gtm_hit.management.scene_command import SceneCommand
 from gtm_hit.ops import uploads
 from gtm_hit.ops.importing.calibrations import UNITS
 from gtm_hit.ops.importing.dataset import ImportFailed, ImportReport, import_dataset
@@ -21,21 +22,11 @@ from gtm_hit.ops.importing.options import PRESETS, ImportOptions, SceneValues
 Number = TypeVar("Number", int, float)
 
 
-class Command(BaseCommand):
+class Command(SceneCommand):
     help = (
         "Import a folder, or a zip, in the layout of WILDTRACK or MultiviewX. Everything is checked first; "
         "on any error nothing is imported. A second run adds only frames and annotation files that are new."
     )
-
-    def run_from_argv(self, argv: list[str]) -> None:
-        # argparse takes "-3,-9" for an option unless it is joined to the one it belongs to.
-        joined: list[str] = []
-        for word in argv:
-            if joined and joined[-1] == "--origin":
-                joined[-1] += f"={word}"
-            else:
-                joined.append(word)
-        super().run_from_argv(joined)
 
     def add_arguments(self, parser: CommandParser) -> None:
         parser.add_argument("slug", help="the dataset's name in addresses, for example wildtrack")

@@ -7,24 +7,23 @@ import math
 from pathlib import Path
 from typing import Any
 
-from django.core.management.base import BaseCommand, CommandError, CommandParser
+from django.core.management.base import CommandError, CommandParser
 
 from gtm_hit.management.commands import importdataset
 from gtm_hit.management.progress import ProgressLine
+from gtm_hit.management.scene_command import SceneCommand
 from gtm_hit.ops.importing.dataset import ImportFailed
 from gtm_hit.ops.importing.options import PRESETS, ImportOptions
 from gtm_hit.ops.videos.importing import VideoReport, import_videos
 from gtm_hit.ops.videos.options import SourceError, VideoOptions, VideoSource, parse_source
 
 
-class Command(BaseCommand):
+class Command(SceneCommand):
     help = (
         "Take frames from one video per camera and import them. The offset of a video is the second in it at "
         "which the time all videos share is 0; frame n lies n / --rate seconds after that. Everything is "
         "checked first; run again, it continues where it was stopped."
     )
-
-    run_from_argv = importdataset.Command.run_from_argv
 
     def add_arguments(self, parser: CommandParser) -> None:
         parser.add_argument("slug", help="the dataset's name in addresses, for example plaza")

@@ -7,6 +7,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError
 
+from gtm_hit.management.lookups import dataset_named
 from gtm_hit.management.progress import ProgressLine
 from gtm_hit.models import Job
 from gtm_hit.ops import jobs, overview
@@ -68,6 +69,8 @@ class Command(BaseCommand):
 
 
 def chosen(options: dict[str, Any]) -> Any:
+    if options["dataset"]:
+        dataset_named(options["dataset"])
     wanted = {"dataset__slug": options["dataset"], "kind": options["kind"], "state": options["state"]}
     given = {name: value for name, value in wanted.items() if value}
     return overview.jobs().filter(**given).order_by("-created_at", "-pk")

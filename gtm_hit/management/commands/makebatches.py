@@ -4,7 +4,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
-from gtm_hit.models import Dataset
+from gtm_hit.management.lookups import dataset_named
 from gtm_hit.ops import batches
 
 
@@ -17,9 +17,7 @@ class Command(BaseCommand):
         parser.add_argument("--copies", type=int, default=1, help="opinions per frame (default: 1)")
 
     def handle(self, *args: Any, slug: str, size: int, copies: int, **options: Any) -> None:
-        dataset = Dataset.objects.filter(slug=slug).first()
-        if dataset is None:
-            raise CommandError(f"There is no dataset {slug!r}.")
+        dataset = dataset_named(slug)
         try:
             added = batches.make_batches(dataset, size, copies)
         except batches.BatchError as error:

@@ -5,7 +5,7 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.urls import reverse
 
-from gtm_hit.models import Dataset
+from gtm_hit.management.lookups import dataset_named
 from gtm_hit.ops import entry_links, tokens, workers
 
 
@@ -26,9 +26,7 @@ class Command(BaseCommand):
     ) -> None:
         if worker and (options["close"] or options["open"]):
             raise CommandError("--close and --open are for the general link, --worker is for a personal one.")
-        dataset = Dataset.objects.filter(slug=slug).first()
-        if dataset is None:
-            raise CommandError(f"There is no dataset {slug!r}.")
+        dataset = dataset_named(slug)
         try:
             platform = workers.clean_platform(platform)
             external_id = workers.clean_external_id(worker) if worker else None

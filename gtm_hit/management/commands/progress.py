@@ -5,9 +5,10 @@ from argparse import ArgumentParser
 from dataclasses import asdict
 from typing import Any
 
-from django.core.management.base import BaseCommand, CommandError
+from django.core.management.base import BaseCommand
 
-from gtm_hit.models import Assignment, Dataset
+from gtm_hit.management.lookups import dataset_named
+from gtm_hit.models import Assignment
 from gtm_hit.ops import overview
 
 
@@ -20,9 +21,7 @@ class Command(BaseCommand):
         parser.add_argument("--json", action="store_true", help="print one object")
 
     def handle(self, *, slug: str, state: str | None, **options: Any) -> None:
-        dataset = Dataset.objects.filter(slug=slug).first()
-        if dataset is None:
-            raise CommandError(f"no dataset {slug}")
+        dataset = dataset_named(slug)
         counts = asdict(overview.batch_counts(dataset))
         found = overview.assignments(dataset).filter(**({"state": state} if state else {}))
         rows = [facts(assignment) for assignment in found]

@@ -6,7 +6,8 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError
 
-from gtm_hit.models import Dataset, Release
+from gtm_hit.management.lookups import dataset_named
+from gtm_hit.models import Release
 from gtm_hit.ops import releases
 
 
@@ -22,9 +23,7 @@ class Command(BaseCommand):
         )
 
     def handle(self, *, slug: str, number: int | None, part: str | None, **options: Any) -> None:
-        dataset = Dataset.objects.filter(slug=slug).first()
-        if dataset is None:
-            raise CommandError(f"no dataset {slug}")
+        dataset = dataset_named(slug)
         found = releases.releases(dataset)
         if number is not None:
             found = found.filter(number=number)

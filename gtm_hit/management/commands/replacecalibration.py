@@ -8,8 +8,8 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
 from gtm_hit.formats.problems import FormatError
+from gtm_hit.management.lookups import dataset_named
 from gtm_hit.management.progress import ProgressLine
-from gtm_hit.models import Dataset
 from gtm_hit.ops.calibration.reading import read_replacement
 from gtm_hit.ops.calibration.replacing import preview, replace_calibration
 from gtm_hit.ops.importing.calibrations import UNITS
@@ -34,9 +34,7 @@ class Command(BaseCommand):
         parser.add_argument("--confirm", action="store_true", help="put the new calibration in place")
 
     def handle(self, *args: object, **options: Any) -> None:
-        dataset = Dataset.objects.filter(slug=options["slug"]).first()
-        if dataset is None:
-            raise CommandError(f"There is no dataset {options['slug']}.")
+        dataset = dataset_named(options["slug"])
         try:
             cameras = read_replacement(dataset, options["calibration"].absolute(), options["tvec_unit"])
         except FormatError as error:

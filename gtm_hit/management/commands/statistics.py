@@ -8,7 +8,7 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError
 
 from gtm_hit.formats.files import write_bytes
-from gtm_hit.management.layers import layer_named
+from gtm_hit.management.lookups import layer_named
 from gtm_hit.ops.quality.statistics import EVERY, ground_coverage, layer_statistics
 from gtm_hit.ops.quality.statistics_figures import FIGURES
 from gtm_hit.ops.quality.statistics_files import PICTURES, numbers_csv

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from gtm_hit.formats.problems import Problem
+from gtm_hit.formats.problems import Problem, ProblemList
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.ops.annotation_import.tables import NOBODY, Boxes, Ids, People, Sources
 
@@ -24,22 +24,25 @@ class Kind(StrEnum):
 
 @dataclass
 class Findings:
-    """Problems by kind; those of the kinds in `drop` cost only the rows they are about."""
+    """Problems by kind; those of the kinds in `drop` are counted, they cost only the rows they are about.
+
+    `standing` is what nobody agreed to drop.
+    """
 
     drop: frozenset[Kind]
-    found: list[tuple[Kind, Problem]] = field(default_factory=list)
+    standing: ProblemList = field(default_factory=lambda: ProblemList(""))
+    counts: Counter[Kind] = field(default_factory=Counter)
 
     def add(self, kind: Kind, problem: Problem) -> None:
-        self.found.append((kind, problem))
-
-    @property
-    def standing(self) -> list[Problem]:
-        """What nobody agreed to drop."""
-        return [problem for kind, problem in self.found if kind not in self.drop]
+        """Raises FormatError when there is more wrong than is worth listing."""
+        if kind in self.drop:
+            self.counts[kind] += 1
+        else:
+            self.standing.extend([problem])
 
     @property
     def dropped(self) -> dict[Kind, int]:
-        return dict(Counter(kind for kind, _ in self.found if kind in self.drop))
+        return dict(self.counts)
 
 
 Table = TypeVar("Table", People, Boxes)

@@ -111,7 +111,7 @@ def run(mine: jobs.Run) -> dict[str, Any]:
                 parameters["hidden"],
                 [Kind(name) for name in parameters["drop"]],
             )
-            found = import_annotations(dataset, wanted, report, lambda: mine.confirm(60, 100), remember)
+            found = import_annotations(dataset, wanted, report, lambda: mine.confirm(100, 100), remember)
     except ImportFailed as error:
         raise AnnotationImportError(told(error.problems, "nothing was imported")) from error
     except FormatError as error:

@@ -11,14 +11,15 @@ from django.core.exceptions import ValidationError
 from django.db import IntegrityError, transaction
 
 from gtm_hit.formats.problems import FormatError, Problem
-from gtm_hit.models import Annotation, Dataset, Frame, Layer
+from gtm_hit.models import Dataset, Frame, Layer
 from gtm_hit.ops.annotation_import import findings as sieve
+from gtm_hit.ops.annotation_import import unfinished
 from gtm_hit.ops.annotation_import.exported import part_of
 from gtm_hit.ops.annotation_import.findings import Findings, Kind
 from gtm_hit.ops.annotation_import.placing import place
 from gtm_hit.ops.annotation_import.reading import READERS, Scene
-from gtm_hit.ops.annotation_import.tables import Boxes, Floats, People
-from gtm_hit.ops.annotation_rules import HEIGHTS, RADII, Row
+from gtm_hit.ops.annotation_import.tables import Boxes, People
+from gtm_hit.ops.annotation_rules import HEIGHTS, RADII
 from gtm_hit.ops.coverage import table
 from gtm_hit.ops.importing import rows
 from gtm_hit.ops.importing.annotations import ImportedFrame
@@ -62,32 +63,29 @@ def import_annotations(
     """Make a layer of annotation files.
 
     Raises ImportFailed with everything that is wrong or does not fit and is not to be dropped; then nothing
-    is imported. `confirm` is asked once before anything is written, `remember` told in its transaction.
+    is imported. `confirm` is asked once before the layer appears, `remember` told in that transaction.
     """
     findings = Findings(frozenset(source.drop))
     try:
         people = _read(dataset, source, report, findings)
+        findings.standing.raise_if_any()
     except FormatError as error:
         raise ImportFailed(_seen_from(source.path, error.problems)) from error
-    if findings.standing:
-        raise ImportFailed(_seen_from(source.path, findings.standing))
     if not len(people) and not people.empty:
         raise ImportFailed((Problem(source.path.name, "", "holds no annotation of this dataset"),))
-    confirm()
-    report(WRITING, 0, 1)
     frames = len(np.union1d(people.frames, np.array(people.empty, dtype=np.int64)))
-    try:
-        with transaction.atomic():
-            layer = Layer.objects.create(
-                dataset=dataset, name=source.layer, kind=Layer.Kind.IMPORTED, hidden=source.hidden
-            )
-            rows.add_annotations(layer, _told(_frames(people), frames, report))
-            done = LayerReport(layer, frames, len(np.unique(people.persons)), len(people), findings.dropped)
-            if remember:
-                remember(done)
-    except IntegrityError as error:
-        reason = "was made by somebody else in the meantime; choose another name"
-        raise ImportFailed((Problem(source.layer, "", reason),)) from error
+    with unfinished.layer(dataset, hidden=source.hidden) as layer:
+        rows.add_annotations(layer, _told(_frames(people), frames, report))
+        confirm()
+        done = LayerReport(layer, frames, len(np.unique(people.persons)), len(people), findings.dropped)
+        try:
+            with transaction.atomic():
+                unfinished.appear(layer, source.layer)
+                if remember:
+                    remember(done)
+        except IntegrityError as error:
+            reason = "was made by somebody else in the meantime; choose another name"
+            raise ImportFailed((Problem(source.layer, "", reason),)) from error
     return done
 
 
@@ -137,38 +135,16 @@ def _frames(people: People) -> Iterator[ImportedFrame]:
     """By number, also frames with nobody."""
     order = np.lexsort((people.persons, people.frames))
     numbers, starts = np.unique(people.frames[order], return_index=True)
-    ends = np.append(starts[1:], len(order))
+    ends = np.append(starts, len(order))[1:]
     found = {
         number: order[start:end]
         for number, start, end in zip(numbers.tolist(), starts.tolist(), ends.tolist(), strict=True)
     }
     for number in sorted({*found, *people.empty}):
-        yield ImportedFrame(number, _rows(people, found.get(number, np.zeros(0, np.int64))), [])
-
-
-def _rows(people: People, of_frame: np.ndarray) -> list[Row]:
-    columns: Sequence[list] = [
-        people.persons[of_frame].tolist(),
-        people.positions[of_frame].tolist(),
-        _or_none(people.heights[of_frame]),
-        _or_none(people.radii[of_frame]),
-    ]
-    return [
-        {
-            "person": person,
-            "position": position,
-            "state": Annotation.State.VALIDATED.value,
-            "origin": Annotation.Origin.IMPORTED.value,
-            "height": height,
-            "radius": radius,
-        }
-        for person, position, height, radius in zip(*columns, strict=True)
-    ]
-
-
-def _or_none(values: Floats) -> list[float | None]:
-    # NaN is the only number that differs from itself.
-    return [value if value == value else None for value in values.tolist()]
+        rows = found.get(number, np.zeros(0, np.int64))
+        yield ImportedFrame(
+            number, people.persons[rows], people.positions[rows], people.heights[rows], people.radii[rows]
+        )
 
 
 def _told(frames: Iterator[ImportedFrame], total: int, report: Progress) -> Iterator[ImportedFrame]:

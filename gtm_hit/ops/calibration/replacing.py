@@ -118,7 +118,7 @@ def _worst(moved: Moved) -> dict[str, Any]:
 def _picture(dataset: Dataset, comparison: Comparison) -> dict[str, Any]:
     """The fullest frame of any layer, its boxes before and after; a lattice where nobody is annotated."""
     fullest = (
-        Annotation.objects.filter(layer__dataset=dataset)
+        Annotation.objects.filter(layer__dataset=dataset, layer__unfinished=False)
         .values("layer", "frame")
         .annotate(people=Count("pk"))
         .order_by("-people", "frame__number")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -15,15 +15,17 @@ from gtm_hit.formats.layout import Layout, find_layout
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList
 from gtm_hit.geometry.camera import Camera as CalibratedCamera
 from gtm_hit.geometry.table import RectangleTable
-from gtm_hit.models import Dataset, Image, Layer, LayerFrame
-from gtm_hit.ops.images import Derivatives
+from gtm_hit.models import Dataset, Frame, Image, Layer, LayerFrame
+from gtm_hit.ops.images import MOST_PIXELS, Derivatives
 from gtm_hit.ops.importing import rows
-from gtm_hit.ops.importing.annotations import ImportedFrame, compare_boxes, ignored_sizes, read_annotations
+from gtm_hit.ops.importing.annotations import ImportedFrame, compare_boxes, read_annotations
 from gtm_hit.ops.importing.calibrations import View, read_views, tell_differences, tell_wrong_unit
-from gtm_hit.ops.importing.options import PRESETS, ImportOptions, scene
+from gtm_hit.ops.importing.options import PRESETS, ImportOptions, scene, tell_too_many
 from gtm_hit.ops.importing.pictures import Key, Known, Picture, camera_sizes, make_pictures
 from gtm_hit.ops.jobs_progress import WRITING, Progress, no_progress
 from gtm_hit.ops.picture_cleanup import pictures_in_use
+
+FRAMES_AT_ONCE = 500  # in one question to the database
 
 
 class ImportFailed(Exception):
@@ -89,7 +91,7 @@ def import_dataset(
             return report
     except BaseException as error:
         if isinstance(error, FormatError):
-            raise ImportFailed(error.relative_to(options.folder.resolve()).problems) from error
+            raise ImportFailed(error.relative_to(options.folder).problems) from error
         if isinstance(error, IntegrityError):
             reason = "was changed by another import in the meantime; run this one again"
             raise ImportFailed((Problem(options.slug, "", reason),)) from error
@@ -114,14 +116,15 @@ def _read(options: ImportOptions, progress: Progress, problems: ProblemList) -> 
     progress("reading image headers", 1, 1)
     views = read_views(layout, sizes, options.unit, options.undistort, problems)
     cameras = [view.camera for view in views]
+    tell_too_many(dataset, len(layout.cameras), problems)
     if len(cameras) == len(layout.cameras):
         if existing is not None:
             tell_differences(cameras, known, options.unit, problems)
         else:
             tell_wrong_unit(cameras, dataset.grid, options.unit, problems)
-    known_images = _known_images(existing)
+    known_images = _known_images(existing, sorted(set().union(*layout.images.values())))
     notes: list[str] = []
-    numbers = _new_numbers(options, dataset, layout, known_images, notes)
+    numbers = _new_numbers(options, dataset, layout, _known_numbers(existing), notes)
     return Reading(
         options=options,
         existing=existing,
@@ -170,26 +173,31 @@ def _layout(
     return layout
 
 
-def _known_images(existing: Dataset | None) -> dict[Key, Known]:
-    if existing is None:
-        return {}
-    found = Image.objects.filter(frame__dataset=existing)
+def _known_images(existing: Dataset | None, numbers: Sequence[int]) -> dict[Key, Known]:
+    """Of these frames alone: videos come in some instants at a time, into what may be hours already."""
     digests = ("source_digest", "light_digest", "full_digest")
-    return {
-        (camera, number): Known(*known)
-        for camera, number, *known in found.values_list("camera__index", "frame__number", *digests)
-    }
+    known: dict[Key, Known] = {}
+    for start in range(0, len(numbers) if existing else 0, FRAMES_AT_ONCE):
+        these = numbers[start : start + FRAMES_AT_ONCE]
+        found = Image.objects.filter(frame__dataset=existing, frame__number__in=these)
+        for camera, number, *made in found.values_list("camera__index", "frame__number", *digests):
+            known[camera, number] = Known(*made)
+    return known
+
+
+def _known_numbers(existing: Dataset | None) -> set[int]:
+    """Of the dataset's frames; a number is a hundredth of what the digests of its images are."""
+    return set(Frame.objects.filter(dataset=existing).values_list("number", flat=True)) if existing else set()
 
 
 def _new_numbers(
     options: ImportOptions,
     dataset: Dataset,
     layout: Layout,
-    known_images: Mapping[Key, Known],
+    there: Collection[int],
     notes: list[str],
 ) -> list[int]:
     """Frames to add: every n-th, and whatever has annotations."""
-    there = {number for _camera, number in known_images}
     numbers = sorted(set().union(*layout.images.values()))
     new = [number for number in numbers if number not in there]
     if options.keep_all_frames or not numbers:
@@ -221,16 +229,16 @@ def _annotations(
         paths = {number: path for number, path in paths.items() if number not in known}
         if known:
             notes.append(f"{len(known)} annotation files are in layer {layer.name} already")
-    frames = read_annotations(
+    found = read_annotations(
         paths,
         dataset,
         len(layout.cameras),
         partial(progress, "reading annotations"),
         problems,
     )
-    if ignored := ignored_sizes(frames):
-        notes.append(f"height or radius of {ignored} people is not in metres and was ignored")
-    return frames
+    if found.ignored_sizes:
+        notes.append(f"height or radius of {found.ignored_sizes} people is not in metres and was ignored")
+    return found.frames
 
 
 def _make(reading: Reading, progress: Progress, problems: ProblemList) -> dict[Key, Derivatives]:
@@ -240,9 +248,9 @@ def _make(reading: Reading, progress: Progress, problems: ProblemList) -> dict[K
         _make_table(reading, progress, problems)
     wanted = {*reading.numbers, *(number for _camera, number in reading.known_images)}
     told = {problem.path for problem in problems.found}
-    undistorts = {view.camera.name: view.undistort for view in reading.views}
+    views = {view.camera.name: view for view in reading.views}
     pictures = [
-        Picture((index, number), path, undistorts.get(name), reading.known_images.get((index, number)))
+        _picture((index, number), path, views.get(name), reading.known_images)
         for index, name in enumerate(reading.layout.cameras)
         for number, path in reading.layout.images[name].items()
         if number in wanted and str(path) not in told
@@ -253,6 +261,13 @@ def _make(reading: Reading, progress: Progress, problems: ProblemList) -> dict[K
     made = make_pictures(pictures, partial(progress, phase), problems, only_check)
     problems.raise_if_any()
     return made
+
+
+def _picture(key: Key, path: Path, view: View | None, known_images: Mapping[Key, Known]) -> Picture:
+    known = known_images.get(key)
+    if view is None:
+        return Picture(key, path, MOST_PIXELS, known=known)
+    return Picture(key, path, view.camera.width * view.camera.height, view.undistort, known)
 
 
 def _make_table(reading: Reading, progress: Progress, problems: ProblemList) -> None:
@@ -302,7 +317,7 @@ def _write(
             frames_added=len(reading.numbers),
             images_added=len(made.keys() - reading.known_images.keys()),
             annotated_frames_added=len(reading.imported),
-            people_added=sum(len(frame.rows) for frame in reading.imported),
+            people_added=sum(map(len, reading.imported)),
             notes=reading.notes,
         )
         if remember:

@@ -84,6 +84,7 @@ DEFAULTS = SceneValues(
 
 # 110 m × 110 m at 2.5 cm; the table of one camera has 160 MB then. More is a slip of the fingers.
 MOST_POSITIONS = 20_000_000
+MOST_RECTANGLES = 160_000_000  # positions × cameras; the whole table has 1.3 GB then
 DIGITS = range(1, 10)
 
 # A wrong guess here would shift every position or change every speed without anybody noticing.
@@ -143,6 +144,17 @@ def scene(options: ImportOptions, existing: Dataset | None, problems: ProblemLis
     return dataset
 
 
+def tell_too_many(dataset: Dataset, cameras: int, problems: ProblemList) -> None:
+    """A table that no disk and no browser wants."""
+    count = dataset.columns * dataset.rows
+    if count * cameras > MOST_RECTANGLES:
+        problems.add(
+            "options",
+            f"--grid has {count:,} positions, which {cameras} cameras make {count * cameras:,} rectangles; "
+            f"at most {MOST_RECTANGLES:,} are sensible: {MOST_RECTANGLES // cameras:,} positions",
+        )
+
+
 def _tell_impossible(dataset: Dataset, problems: ProblemList) -> None:
     try:
         dataset.full_clean(validate_unique=False)
@@ -156,7 +168,8 @@ def _tell_impossible(dataset: Dataset, problems: ProblemList) -> None:
         problems.add("options", str(error))
         return
     if positions > MOST_POSITIONS:
-        problems.add("options", f"--grid has more than {MOST_POSITIONS} positions")
+        reason = f"--grid has {positions:,} positions; at most {MOST_POSITIONS:,} are sensible"
+        problems.add("options", reason)
     if not math.isfinite(dataset.frame_rate):
         problems.add("options", f"frame_rate must be finite, not {dataset.frame_rate}")
     if dataset.annotation_digits not in DIGITS:

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, as_completed, wait
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 from gtm_hit.formats.files import read_source
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList
 from gtm_hit.ops import images
-from gtm_hit.ops.images import Derivatives, ImageError, Undistort
+from gtm_hit.ops.images import MOST_PIXELS, Derivatives, ImageError, Undistort
 from gtm_hit.ops.jobs_progress import Steps
 
-MOST_THREADS = 8  # each holds one decoded picture several times over
+MOST_THREADS = 8
+MOST_PIXELS_TOGETHER = MOST_PIXELS  # each is held several times over: nine bytes of memory and more
 Key = tuple[int, int]
 """Camera index and frame number."""
+Made = Derivatives | None
 
 
 class Known(NamedTuple):
@@ -35,6 +38,7 @@ class Picture:
 
     key: Key
     path: Path
+    pixels: int  # of its camera
     undistort: Undistort | None = None
     known: Known | None = None
 
@@ -79,10 +83,9 @@ def make_pictures(
     # Threads: decoding, remapping and encoding all let go of Python's lock. The file is read inside the
     # task, so no more pictures than threads are in memory.
     with ThreadPoolExecutor(workers) as pool:
-        futures = {pool.submit(_make, picture, only_check): picture for picture in pictures}
         try:
-            for done, future in enumerate(as_completed(futures), start=1):
-                picture = futures[future]
+            work = _completed(pool, workers, pictures, partial(_make, only_check=only_check))
+            for done, (picture, future) in enumerate(work, start=1):
                 try:
                     derivatives = future.result()
                 except ImageError as error:
@@ -99,6 +102,26 @@ def make_pictures(
         Problem(str(picture.path), "", found[picture.path]) for picture in pictures if picture.path in found
     )
     return made
+
+
+def _completed(
+    pool: ThreadPoolExecutor, workers: int, pictures: Iterable[Picture], task: Callable[[Picture], Made]
+) -> Iterator[tuple[Picture, Future[Made]]]:
+    """As they end. No more are begun than keep all threads busy, and than memory can hold decoded."""
+    begun: dict[Future[Made], Picture] = {}
+    for picture in pictures:
+        while begun and (
+            len(begun) == 2 * workers or _pixels(begun.values()) + picture.pixels > MOST_PIXELS_TOGETHER
+        ):
+            for future in wait(begun, return_when=FIRST_COMPLETED).done:
+                yield begun.pop(future), future
+        begun[pool.submit(task, picture)] = picture
+    for future in as_completed(list(begun)):
+        yield begun.pop(future), future
+
+
+def _pixels(pictures: Iterable[Picture]) -> int:
+    return sum(picture.pixels for picture in pictures)
 
 
 def _sizes(paths: Iterable[Path], problems: ProblemList) -> dict[Path, tuple[int, int]]:

@@ -6,6 +6,8 @@ import uuid
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 
+from django.db import transaction
+
 from gtm_hit.geometry.camera import Camera as CalibratedCamera
 from gtm_hit.models import Annotation, Camera, Dataset, Frame, Image, Layer, LayerFrame, Save
 from gtm_hit.ops.images import Derivatives
@@ -75,16 +77,18 @@ def add_annotations(layer: Layer, imported: Iterable[ImportedFrame]) -> None:
     """Frames the layer does not have yet, each with its first save, done."""
     following = iter(imported)
     while together := list(islice(following, FRAMES_AT_ONCE)):
-        _add_annotations(layer, together)
+        with transaction.atomic():  # all who save wait for the end of it
+            _add_annotations(layer, together)
 
 
 def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
     numbers = [each.number for each in imported]
+    people = [each.rows() for each in imported]
     found = Frame.objects.filter(dataset=layer.dataset, number__in=numbers)
     frames = {frame.number: frame for frame in found}
     heads = LayerFrame.objects.bulk_create(
         [
-            LayerFrame(layer=layer, frame=frames[each.number], revision=1, done=True, nobody=not each.rows)
+            LayerFrame(layer=layer, frame=frames[each.number], revision=1, done=True, nobody=not len(each))
             for each in imported
         ],
         batch_size=ROWS_AT_ONCE,
@@ -95,11 +99,11 @@ def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
                 layer_frame=head,
                 revision=1,
                 save_id=uuid.uuid4(),
-                annotations=each.rows,
+                annotations=rows,
                 done=True,
-                nobody=not each.rows,
+                nobody=not rows,
             )
-            for head, each in zip(heads, imported, strict=True)
+            for head, rows in zip(heads, people, strict=True)
         ],
         batch_size=ROWS_AT_ONCE,
     )
@@ -108,9 +112,9 @@ def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
         ("layer_id", "frame_id", *ROW),
         (
             (layer.pk, frames[each.number].pk, *(row[name] for name in ROW))
-            for each in imported
-            for row in each.rows
+            for each, rows in zip(imported, people, strict=True)
+            for row in rows
         ),
     )
-    largest = max((row["person"] for each in imported for row in each.rows), default=0)
-    Layer.objects.filter(pk=layer.pk, last_person__lt=largest).update(last_person=largest)
+    largest = max((int(each.persons.max()) for each in imported if len(each)), default=0)
+    Layer.with_unfinished.filter(pk=layer.pk, last_person__lt=largest).update(last_person=largest)

@@ -65,7 +65,7 @@ def import_videos(
         with _own_folder(options.dataset.slug) as folder:
             return _Run(options, plan, folder, progress, remember).run()
     except FormatError as error:
-        raise ImportFailed(error.relative_to(options.dataset.folder.resolve()).problems) from error
+        raise ImportFailed(error.relative_to(options.dataset.folder).problems) from error
     except OSError as error:
         raise ImportFailed((Problem("", "", error.strerror or str(error)),)) from error
 

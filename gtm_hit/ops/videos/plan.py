@@ -13,7 +13,7 @@ from gtm_hit.formats.problems import ProblemList
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Dataset, Frame
 from gtm_hit.ops.importing.calibrations import tell_differences, tell_wrong_unit, views_of
-from gtm_hit.ops.importing.options import ImportOptions, SceneValues, scene
+from gtm_hit.ops.importing.options import ImportOptions, SceneValues, scene, tell_too_many
 from gtm_hit.ops.videos.options import VideoOptions, VideoSource
 from gtm_hit.ops.videos.video import Facts, VideoError, probe
 
@@ -58,6 +58,7 @@ def make_plan(options: VideoOptions, problems: ProblemList) -> Plan:
     problems.raise_if_any()
     sources = tuple(sorted(options.sources, key=lambda source: natural_key(source.camera)))
     _tell_twice(sources, problems)
+    tell_too_many(dataset, len(sources), problems)
     facts = _probe(sources, problems)
     _check_calibration(options.dataset, dataset, existing, sources, facts, problems)
     numbers = _numbers(options, dataset, sources, facts, problems) if len(facts) == len(sources) else range(0)
