@@ -80,6 +80,9 @@ class RevisionSerializer(serializers.Serializer[Any]):
     author = serializers.CharField()
     people = serializers.IntegerField()
     done = serializers.BooleanField()
+    calibration = serializers.IntegerField(
+        allow_null=True, help_text="number of the calibration in place then; null: not known"
+    )
 
 
 class HistorySerializer(serializers.Serializer[Any]):

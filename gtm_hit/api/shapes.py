@@ -217,12 +217,16 @@ class JobShape(serializers.ModelSerializer[Job]):
 
 class ReleaseShape(serializers.ModelSerializer[Release]):
     layer = serializers.CharField(source="layer.name")
+    calibration = serializers.IntegerField(source="calibration.number", default=None, allow_null=True)
     counts = serializers.DictField(child=serializers.IntegerField())
     created_by = serializers.CharField(source="created_by.username", default=None, allow_null=True)
 
     class Meta:
         model = Release
-        fields = ["number", "title", "layer", "counts", "manifest_digest", "created_by", "created_at"]
+        fields = [
+            *("number", "title", "layer", "calibration", "counts"),
+            *("manifest_digest", "created_by", "created_at"),
+        ]
 
 
 class SourceSerializer(serializers.Serializer[Any]):

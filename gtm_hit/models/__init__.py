@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from gtm_hit.models.annotation import Annotation, AppendOnlyError, Layer, LayerFrame, Save
+from gtm_hit.models.calibration import Calibration
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
 from gtm_hit.models.release import Release
@@ -13,6 +14,7 @@ __all__ = [
     "AppendOnlyError",
     "Assignment",
     "Batch",
+    "Calibration",
     "Camera",
     "Dataset",
     "Frame",
