@@ -14,6 +14,7 @@ from django.contrib.auth.models import User
 from django.db import transaction
 from django.db.models import F, QuerySet
 
+from gtm_hit.formats.files import make_folder, sync_tree
 from gtm_hit.formats.manifest import Manifest, manifest_json
 from gtm_hit.formats.stable_zip import StableZip, stable_zip
 from gtm_hit.models import Calibration, Dataset, Job, Layer, Release
@@ -116,6 +117,7 @@ def make_release(
         with stable_zip(archive, f"{dataset.slug}-release-{number}") as packed:
             manifest, calibration = _write(order, content, packed, number, before, report)
         _protect(content)
+        sync_tree(content)  # not while the row's transaction keeps others waiting
         if confirm:
             confirm()
         with transaction.atomic():
@@ -126,10 +128,9 @@ def make_release(
             if remember:
                 remember(release)
             target = folder_of(release)
-            target.parent.mkdir(parents=True, exist_ok=True)
+            make_folder(target.parent)
             # Without a row there can only be what a power cut left.
-            exporting.replace(content, target, partial / "before")
-            archive.replace(archive_of(release))
+            exporting.rename_all([(content, target), (archive, archive_of(release))], partial / "before")
     return release
 
 
