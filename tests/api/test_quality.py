@@ -155,3 +155,23 @@ def test_the_link_lets_workers_in(dataset: Dataset, staff: Caller, stranger: Cal
     assert user.get(BASE + "link/").status_code == 403
     assert bearer("read", "import", "release").get(BASE + "link/").status_code == 403
     assert bearer("work").get(BASE + "link/?platform=a%20b").status_code == 400
+
+
+def crowd(people: int, frames: int = 1) -> str:
+    return "".join(f"{frame} {column} 0\n" for frame in range(frames) for column in range(people))
+
+
+def test_a_crowd_that_would_fill_the_memory_is_refused(db: None) -> None:
+    response = send(bearer("read"), crowd(6000), crowd(6000))
+    assert (response.status_code, response.json()["code"]) == (400, "invalid")
+    assert "6000 people are in frame 0; at most 500" in response.json()["details"][0]["reason"]
+
+
+def test_a_request_for_too_many_pairs_is_refused(db: None) -> None:
+    response = send(bearer("read"), crowd(500, 41), crowd(500, 41))
+    assert response.status_code == 400 and "pairs of people" in response.json()["details"][0]["reason"]
+
+
+def test_a_full_frame_is_compared(db: None) -> None:
+    response = send(bearer("read"), crowd(500), crowd(500))
+    assert response.status_code == 200 and response.json()["matched"] == 500
