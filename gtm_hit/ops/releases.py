@@ -24,7 +24,7 @@ from gtm_hit.ops.export_folder import FRAMES, TABLE, ExportFolder
 from gtm_hit.ops.export_formats.registry import chosen
 from gtm_hit.ops.export_formats.target import RECTANGLES, Report
 from gtm_hit.ops.quality.layer_rows import state_of
-from gtm_hit.ops.quality.statistics import ground_coverage, layer_statistics
+from gtm_hit.ops.quality.statistics import ground_coverage, layer_statistics, unmeasurable
 from gtm_hit.ops.quality.statistics_figures import FIGURES, figure
 from gtm_hit.ops.releasing.changes import CHANGES, write_changes
 from gtm_hit.ops.releasing.provenance import PROVENANCE, ProvenanceWriter
@@ -139,6 +139,8 @@ def check(order: Order) -> None:
         chosen(order.formats)
     except ValueError as error:
         raise ReleaseError(str(error)) from error
+    if reason := unmeasurable(order.layer.dataset):
+        raise ReleaseError(reason)
     if not order.licence.strip():
         raise ReleaseError("A release needs a licence text.")
     if len(order.licence) > MOST_LICENCE:

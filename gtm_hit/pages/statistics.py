@@ -18,7 +18,13 @@ from django.views.decorators.http import require_safe
 
 from gtm_hit.metrics.coverage import Coverage
 from gtm_hit.models import Layer
-from gtm_hit.ops.quality.statistics import EVERY, LayerStatistics, ground_coverage, layer_statistics
+from gtm_hit.ops.quality.statistics import (
+    EVERY,
+    LayerStatistics,
+    ground_coverage,
+    layer_statistics,
+    unmeasurable,
+)
 from gtm_hit.ops.quality.statistics_figures import FIGURES, figure
 from gtm_hit.ops.quality.statistics_files import numbers_csv
 from gtm_hit.pages.access import staff_only
@@ -66,6 +72,8 @@ def asked_for(request: HttpRequest, slug: str) -> Asked:
     context = {"section": "datasets", "tab": "statistics", "dataset": dataset, "form": form}
     if not dataset.cameras.exists():
         return Asked(context, None, EVERY, _("This dataset has no cameras."))
+    if reason := unmeasurable(dataset):
+        return Asked(context, None, EVERY, reason)
     if not choice.listed:
         return Asked(context, None, EVERY, _("This dataset has no layers yet."))
     if not form.is_valid():
