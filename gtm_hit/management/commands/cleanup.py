@@ -11,8 +11,9 @@ from gtm_hit.ops import export_expiry, exporting, uploads
 
 class Command(BaseCommand):
     help = (
-        "Remove the files of exports older than EXPORT_KEEP_DAYS, archives nobody imported for a week, and "
-        "unfinished work of killed workers. The Celery beat does the same every hour. Releases always stay."
+        "Remove the files of exports older than EXPORT_KEEP_DAYS, archives nobody imported and rectangle "
+        "tables nobody used for a week, and unfinished work of killed workers. The Celery beat does the same "
+        "every hour. Releases always stay."
     )
 
     def handle(self, *args: Any, **options: Any) -> None:
