@@ -15,6 +15,7 @@ from gtm_hit.models import (
     Assignment,
     Attempt,
     Batch,
+    Calibration,
     Camera,
     Dataset,
     EntryLink,
@@ -63,12 +64,20 @@ class DatasetAdmin(admin.ModelAdmin):
         "cylinder_height",
         "foot_rule",
         "undistorted",
-        "table_digest",
+        "calibration",
         "created_at",
     ]
 
     def has_add_permission(self, request: HttpRequest) -> bool:
         return False  # `manage.py importdataset` brings images and calibration along
+
+
+@admin.register(Calibration)
+class CalibrationAdmin(LookOnlyAdmin):
+    list_display = ["number", "dataset", "source", "digest", "created_by", "created_at"]
+    list_filter = ["dataset"]
+    list_select_related = ["dataset", "created_by"]
+    search_fields = ["=number", "dataset__slug", "source", "=digest"]
 
 
 @admin.register(Camera)

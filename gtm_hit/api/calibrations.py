@@ -4,20 +4,36 @@ from __future__ import annotations
 
 from typing import Any
 
+from django.contrib.auth.models import User
+from django.db.models import QuerySet
 from django.http import Http404
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiExample, extend_schema, extend_schema_serializer
 from rest_framework import serializers
+from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
 from rest_framework.response import Response
 
+from gtm_hit.api.fields import LARGEST
 from gtm_hit.api.imports import refused
 from gtm_hit.api.jobs import JobShape, job_or_404, started
 from gtm_hit.api.parsing import BoundedMultiPartParser
 from gtm_hit.api.refusals import refusal, valid
-from gtm_hit.api.staff import READS, WRITES, Conflict, StaffView, answers, caller, dataset_or_404
+from gtm_hit.api.staff import (
+    READS,
+    WRITES,
+    Conflict,
+    Pages,
+    StaffView,
+    answers,
+    caller,
+    dataset_or_404,
+    invalid,
+)
 from gtm_hit.formats.problems import FormatError
-from gtm_hit.models import ApiToken, Job
+from gtm_hit.models import ApiToken, Calibration, Dataset, Job
 from gtm_hit.ops.calibration import job as calibration_job
+from gtm_hit.ops.calibration import versions
 from gtm_hit.ops.calibration.reading import MOST_BYTES, read_upload
 from gtm_hit.ops.calibration.replacing import ReplacementError
 from gtm_hit.ops.importing.calibrations import UNITS
@@ -29,10 +45,41 @@ class CalibrationParser(BoundedMultiPartParser):
 
 
 class CalibrationSerializer(serializers.Serializer[Any]):
-    file = serializers.FileField(help_text="cameras.json, or a zip of a folder of calibrations")
+    """`file` or `version`."""
+
+    file = serializers.FileField(
+        required=False, help_text="cameras.json, or a zip of a folder of calibrations"
+    )
+    version = serializers.IntegerField(
+        required=False, min_value=1, max_value=LARGEST, help_text="one the dataset had before"
+    )
     tvec_unit = serializers.ChoiceField(
         choices=list(UNITS), default="m", help_text="of tvec in XML and YAML; cameras.json is in metres"
     )
+
+    def validate(self, given: dict[str, Any]) -> dict[str, Any]:
+        if ("file" in given) == ("version" in given):
+            raise invalid("file", _("Send either a file or the number of a version."))
+        return given
+
+
+class VersionSerializer(serializers.ModelSerializer[Calibration]):
+    created_by = serializers.CharField(source="created_by.username", default=None, allow_null=True)
+    in_place = serializers.SerializerMethodField()
+
+    class Meta:
+        model = Calibration
+        fields = ["number", "in_place", "source", "digest", "created_by", "created_at"]
+
+    def get_in_place(self, row: Calibration) -> bool:
+        return row.dataset.calibration_id == row.pk
+
+
+class WholeVersionSerializer(VersionSerializer):
+    cameras = serializers.DictField(help_text="the content of a cameras.json")
+
+    class Meta(VersionSerializer.Meta):
+        fields = [*VersionSerializer.Meta.fields, "cameras"]
 
 
 class MovedInCameraSerializer(serializers.Serializer[Any]):
@@ -89,6 +136,7 @@ class MovedBoxSerializer(serializers.Serializer[Any]):
                     }
                 ],
                 "confirmed_at": None,
+                "calibration": None,
             },
             response_only=True,
         )
@@ -100,6 +148,7 @@ class CalibrationPreviewSerializer(serializers.Serializer[Any]):
     cameras = MovedInCameraSerializer(many=True)
     worst = MovedBoxSerializer(many=True, help_text="boxes that move most")
     confirmed_at = serializers.DateTimeField(allow_null=True, help_text="when it was put in place")
+    calibration = serializers.IntegerField(allow_null=True, help_text="the number it was put in place under")
 
 
 class CannotConfirm(Conflict):
@@ -121,11 +170,50 @@ class Calibrations(StaffView):
     def post(self, request: Request, slug: str) -> Response:
         dataset = dataset_or_404(slug)
         wanted = valid(CalibrationSerializer(data=request.data))
+        if "version" in wanted:
+            return started(self.back_to(dataset, wanted["version"], caller(request)))
         try:
             cameras = read_upload(dataset, wanted["file"], wanted["tvec_unit"])
         except FormatError as error:
             raise refused("file", error) from error
-        return started(calibration_job.start(dataset, cameras, caller(request)))
+        return started(calibration_job.start(dataset, cameras, caller(request), wanted["file"].name))
+
+    def back_to(self, dataset: Dataset, number: int, user: User) -> Job:
+        try:
+            return calibration_job.start_version(dataset, number, user)
+        except versions.UnknownVersion as error:
+            raise invalid("version", error) from error
+
+
+class Versions(StaffView, ListAPIView[Calibration]):
+    queryset = Calibration.objects.none()
+    serializer_class = VersionSerializer
+    pagination_class = Pages
+
+    def get_queryset(self) -> QuerySet[Calibration]:
+        return versions.versions(dataset_or_404(self.kwargs["slug"]))
+
+    @extend_schema(
+        operation_id="calibration_versions",
+        summary="Every calibration the dataset has had, the newest first",
+        responses=answers(200, VersionSerializer(many=True), READS),
+    )
+    def get(self, request: Request, *args: Any, **kwargs: Any) -> Response:
+        return super().get(request, *args, **kwargs)
+
+
+class OneVersion(StaffView):
+    @extend_schema(
+        operation_id="calibration_version",
+        summary="A calibration the dataset has or had, with its cameras",
+        responses=answers(200, WholeVersionSerializer, READS),
+    )
+    def get(self, request: Request, slug: str, number: int) -> Response:
+        try:
+            found = versions.version(dataset_or_404(slug), number)
+        except versions.UnknownVersion as error:
+            raise Http404 from error
+        return Response(WholeVersionSerializer(found).data)
 
 
 class OneCalibration(StaffView):
@@ -171,4 +259,4 @@ def change_or_404(slug: str, pk: int) -> Job:
 
 
 def seen(job: Job) -> dict[str, Any]:
-    return {"confirmed_at": None, **job.result, "job": job.pk}
+    return {"confirmed_at": None, "calibration": None, **job.result, "job": job.pk}

@@ -81,6 +81,9 @@ class RevisionSerializer(serializers.Serializer[Any]):
     author = serializers.CharField()
     people = serializers.IntegerField()
     done = serializers.BooleanField()
+    calibration = serializers.IntegerField(
+        allow_null=True, help_text="number of the calibration in place then; null: not known"
+    )
 
 
 class HistorySerializer(serializers.Serializer[Any]):
@@ -182,7 +185,7 @@ class FrameView(PlacedView):
         responses={
             200: FrameStateSerializer,
             400: refusal("invalid; details: a list of place and reason"),
-            403: refusal("read_only; details.reason: submitted, expired or not_author"),
+            403: refusal("read_only; details.reason: submitted, expired, not_author or protected"),
             409: refusal("save_id_used"),
             412: refusal("stale; details.current: the frame as it is now"),
             **REFUSALS,
@@ -190,6 +193,7 @@ class FrameView(PlacedView):
     )
     def put(self, request: Request, number: int, **kwargs: Any) -> Response:
         place = self.place(**kwargs)
+        place.require_unprotected()
         frame = place.frame(number)
         wanted = valid(SaveSerializer(data=request.data))
         state = save_frame(place.layer, frame, place.author, **wanted)

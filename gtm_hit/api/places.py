@@ -27,6 +27,8 @@ from gtm_hit.models import ApiToken, Assignment, Dataset, Frame, Layer, Worker
 from gtm_hit.ops import assignments, parts, tokens
 from gtm_hit.ops.annotations import Author
 
+PROTECTED = "protected"
+
 
 @dataclass(frozen=True)
 class Place:
@@ -38,6 +40,10 @@ class Place:
     read_only_reason: str
     assignment: Assignment | None = None
     part: parts.Part | None = None  # of a layer that is too long to be opened whole
+
+    def require_unprotected(self) -> None:
+        if self.read_only_reason == PROTECTED:
+            raise assignments.ReadOnly(PROTECTED)
 
     def frame(self, number: int) -> Frame:
         frame = self.frames.filter(number=number).first()
@@ -84,10 +90,20 @@ def found_layer(request: Request, pk: int, in_parts: bool, first: int | None) ->
         layer=found,
         frames=Frame.objects.filter(**scope).order_by("number"),
         author=cast(User, request.user),
-        read_only_reason="not_author" if found.kind == Layer.Kind.ASSIGNMENT else "",
+        read_only_reason=_read_only_reason(request, found),
         assignment=assignment,
         part=part,
     )
+
+
+def _read_only_reason(request: Request, layer: Layer) -> str:
+    if layer.kind == Layer.Kind.ASSIGNMENT:
+        return "not_author"
+    # A script that works through layers must not get at what others are measured by.
+    if not isinstance(request.auth, ApiToken):
+        return ""
+    kept = layer.hidden or layer.kind == Layer.Kind.IMPORTED or layer.releases.exists()
+    return PROTECTED if kept else ""
 
 
 # In a worker's assignment; with `as_view(**IN_LAYER)` in any layer, for staff. As a docstring this would be

@@ -34,12 +34,16 @@ from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, FORMATS
 
 class ReleaseShape(serializers.ModelSerializer[Release]):
     layer = serializers.CharField(source="layer.name")
+    calibration = serializers.IntegerField(source="calibration.number", default=None, allow_null=True)
     counts = serializers.DictField(child=serializers.IntegerField())
     created_by = serializers.CharField(source="created_by.username", default=None, allow_null=True)
 
     class Meta:
         model = Release
-        fields = ["number", "title", "layer", "counts", "manifest_digest", "created_by", "created_at"]
+        fields = [
+            *("number", "title", "layer", "calibration", "counts"),
+            *("manifest_digest", "created_by", "created_at"),
+        ]
 
 
 def formats_field(usual: tuple[str, ...]) -> serializers.ListField:

@@ -12,10 +12,16 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 
 from gtm_hit.api.jobs import Download
-from gtm_hit.api.staff import ASKS, StaffView, answers, asked, layer_or_404
+from gtm_hit.api.staff import ASKS, StaffView, answers, asked, invalid, layer_or_404
 from gtm_hit.metrics.coverage import Coverage
 from gtm_hit.models import Layer
-from gtm_hit.ops.quality.statistics import EVERY, LayerStatistics, ground_coverage, layer_statistics
+from gtm_hit.ops.quality.statistics import (
+    EVERY,
+    LayerStatistics,
+    ground_coverage,
+    layer_statistics,
+    unmeasurable,
+)
 from gtm_hit.ops.quality.statistics_figures import FIGURES
 from gtm_hit.ops.quality.statistics_files import PICTURES, numbers_csv
 from gtm_hit.ops.quality.statistics_numbers import as_numbers
@@ -56,6 +62,8 @@ def measured(request: Request, slug: str, name: str) -> tuple[Layer, LayerStatis
     every = asked(request, CoverageQuery)["every"]
     if not layer.dataset.cameras.exists():
         raise Http404
+    if reason := unmeasurable(layer.dataset):
+        raise invalid("", reason)
     return layer, layer_statistics(layer), ground_coverage(layer.dataset, every)
 
 

@@ -77,6 +77,8 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("evaluation/frames/<int:number>/", quality.EvaluationFrame.as_view()),
     path("agreement/", quality.Agreement.as_view()),
     path("calibrations/", calibrations.Calibrations.as_view()),
+    path("calibrations/versions/", calibrations.Versions.as_view()),
+    path("calibrations/versions/<int:number>/", calibrations.OneVersion.as_view()),
     path("calibrations/<int:pk>/", calibrations.OneCalibration.as_view()),
     path("calibrations/<int:pk>/confirm/", calibrations.ConfirmCalibration.as_view()),
     path("annotation-imports/", imports.AnnotationImports.as_view()),

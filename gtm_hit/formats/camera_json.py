@@ -21,10 +21,13 @@ Cameras are numbered in the order of the list. Keys not named here are ignored.
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from gtm_hit.formats.files import read_source, write_bytes
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList, shown
@@ -33,6 +36,7 @@ from gtm_hit.geometry.camera import CalibrationError, Camera
 FORMAT, VERSION = "gtm-cameras", 1
 FACTS = ("name", "width", "height", "matrix", "rvec", "tvec", "distortion")
 MOST_BYTES = 10_000_000
+NUMBERS = ("matrix", "rvec", "tvec", "distortion")
 NO_LENS = [0.0] * 5
 
 
@@ -69,9 +73,28 @@ def _load(path: Path, wants_original: Callable[[Any], bool]) -> list[Camera]:
 
 def save_cameras(path: Path, cameras: Sequence[Camera]) -> None:
     """Write cameras so that `load_cameras` gives the same numbers back."""
-    entries = [camera_facts(camera) for camera in cameras]
-    text = json.dumps({"format": FORMAT, "version": VERSION, "cameras": entries}, indent=2)
-    write_bytes(path, text.encode() + b"\n")
+    write_bytes(path, json.dumps(cameras_content(cameras), indent=2).encode() + b"\n")
+
+
+def cameras_content(cameras: Sequence[Camera]) -> dict[str, Any]:
+    """What such a file holds."""
+    return {"format": FORMAT, "version": VERSION, "cameras": [camera_facts(camera) for camera in cameras]}
+
+
+def cameras_of(content: dict[str, Any]) -> list[Camera]:
+    """The cameras of what `cameras_content` made."""
+    return [_camera(index, facts, original=False) for index, facts in enumerate(content["cameras"])]
+
+
+def content_digest(content: dict[str, Any]) -> str:
+    """SHA-256, hex, of the names and numbers in what `cameras_content` made, however it was stored since."""
+    told = [
+        [facts["name"], facts["width"], facts["height"]]
+        # + 0.0 makes -0.0, which not every database keeps, and 0.0 one number.
+        + [(np.ravel(facts[name]).astype(np.float64) + 0.0).tolist() for name in NUMBERS]
+        for facts in content["cameras"]
+    ]
+    return hashlib.sha256(json.dumps(told).encode()).hexdigest()
 
 
 def camera_facts(camera: Camera) -> dict[str, Any]:

@@ -41,19 +41,51 @@ def reason_of(error: OSError | ValueError) -> str:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[BinaryIO]:
-    """A stream whose bytes appear under `path` all at once, or not at all when the block fails."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    """A stream whose bytes appear under `path` all at once, or not at all when the block fails.
+
+    After the block they are there for good, also after a power cut.
+    """
+    make_folder(path.parent)
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
     temporary = Path(name)
     try:
         with os.fdopen(handle, "wb") as stream:
             yield stream
+            stream.flush()
+            # A rename may reach the disk before the bytes do: an empty file under the final name.
+            os.fsync(stream.fileno())
         # mkstemp makes files only their owner can read; exports are meant to be shared.
         temporary.chmod(0o644)
         temporary.replace(path)
+        sync(path.parent)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def make_folder(path: Path) -> None:
+    """With its parents, all of them there after a power cut, too."""
+    if not path.is_dir():
+        make_folder(path.parent)
+        path.mkdir(exist_ok=True)
+        sync(path.parent)
+
+
+def sync(path: Path) -> None:
+    """Wait until a file's bytes, or the names in a folder, are on the disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def sync_tree(folder: Path) -> None:
+    """A folder with everything below it."""
+    for root, _folders, names in os.walk(folder):
+        for name in names:
+            sync(Path(root) / name)
+        sync(Path(root))
 
 
 def write_bytes(path: Path, data: bytes) -> None:

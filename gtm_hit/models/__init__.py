@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from gtm_hit.models.access import Attempt, EntryLink
 from gtm_hit.models.annotation import Annotation, AppendOnlyError, Layer, LayerFrame, Save
+from gtm_hit.models.calibration import Calibration
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
 from gtm_hit.models.release import Release
@@ -15,6 +16,7 @@ __all__ = [
     "Assignment",
     "Attempt",
     "Batch",
+    "Calibration",
     "Camera",
     "Dataset",
     "EntryLink",

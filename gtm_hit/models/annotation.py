@@ -136,6 +136,14 @@ class Save(models.Model):
     seconds = models.FloatField(default=0, help_text="active seconds since the save before")
     user = models.ForeignKey(settings.AUTH_USER_MODEL, null=True, blank=True, on_delete=models.PROTECT)
     worker = models.ForeignKey("gtm_hit.Worker", null=True, blank=True, on_delete=models.PROTECT)
+    calibration = models.ForeignKey(
+        "gtm_hit.Calibration",
+        null=True,
+        editable=False,
+        on_delete=models.RESTRICT,
+        related_name="+",
+        help_text="the version in place then; empty: not known",
+    )
     created_at = models.DateTimeField(auto_now_add=True)
 
     class Meta:

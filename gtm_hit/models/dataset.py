@@ -50,7 +50,14 @@ class Dataset(models.Model):
         default=False, editable=False, help_text="lens distortion was taken out of the images on import"
     )
     instructions = models.TextField(blank=True, help_text="shown to workers before they start")
-    table_digest = models.CharField(max_length=64, blank=True, editable=False)
+    calibration = models.ForeignKey(
+        "gtm_hit.Calibration",
+        null=True,
+        editable=False,
+        on_delete=models.RESTRICT,
+        related_name="+",
+        help_text="the version in place",
+    )
     created_at = models.DateTimeField(auto_now_add=True)
 
     class Meta:

@@ -18,6 +18,14 @@ class Release(models.Model):
     dataset = models.ForeignKey(Dataset, on_delete=models.PROTECT, related_name="releases")
     number = models.PositiveIntegerField(help_text="from 1")
     layer = models.ForeignKey(Layer, on_delete=models.PROTECT, related_name="releases")
+    calibration = models.ForeignKey(
+        "gtm_hit.Calibration",
+        null=True,
+        editable=False,
+        on_delete=models.RESTRICT,
+        related_name="+",
+        help_text="the version it was made with; empty: not known",
+    )
     title = models.CharField(max_length=200, blank=True)
     manifest = models.JSONField(help_text="counts, parameters, digest of every file")
     manifest_digest = models.CharField(max_length=64, help_text="SHA-256 of manifest.json")

@@ -16,6 +16,7 @@ from django.utils import timezone
 from gtm_hit.models import Annotation, Frame, Layer, LayerFrame, Save, Worker
 from gtm_hit.ops import assignments
 from gtm_hit.ops.annotation_rules import Row, checked
+from gtm_hit.ops.calibration.versions import in_place_id
 
 Author = Worker | AbstractBaseUser | None
 
@@ -45,6 +46,7 @@ class Revision:
     author: str
     people: int
     done: bool
+    calibration: int | None  # number of the version in place then; None: not known
 
 
 class StaleSave(Exception):
@@ -123,6 +125,7 @@ def write_save(layer: Layer, frame: Frame, save: Save) -> FrameState:
         raise StaleSave(read_frame(layer, frame))
     write_rows(layer, frame, save.annotations)
     save.layer_frame = head
+    save.calibration_id = in_place_id(layer.dataset_id)
     save.save(force_insert=True)
     LayerFrame.objects.filter(pk=head.pk).update(
         revision=save.revision,
@@ -231,9 +234,17 @@ def history(layer: Layer, frame: Frame) -> list[Revision]:
     """Every save of the frame, oldest first; the annotations themselves are not loaded."""
     saves = Save.objects.filter(layer_frame__layer=layer, layer_frame__frame=frame)
     saves = saves.select_related("worker", "user").defer("annotations").order_by("revision")
+    counted = saves.annotate(people=JsonLength("annotations"), version=F("calibration__number"))
     return [
-        Revision(save.revision, save.created_at, author_name(save.worker, save.user), save.people, save.done)
-        for save in saves.annotate(people=JsonLength("annotations"))
+        Revision(
+            revision=save.revision,
+            created_at=save.created_at,
+            author=author_name(save.worker, save.user),
+            people=save.people,
+            done=save.done,
+            calibration=save.version,
+        )
+        for save in counted
     ]
 
 

@@ -42,7 +42,7 @@ class BusyElsewhere(AssignmentError):
 
 
 class ReadOnly(AssignmentError):
-    """The layer may not be changed now; `reason` is `submitted`, `expired` or `not_author`."""
+    """The layer may not be changed now; `reason` is `submitted`, `expired`, `not_author` or `protected`."""
 
     def __init__(self, reason: str) -> None:
         super().__init__(reason)
@@ -207,6 +207,7 @@ def explained(reason: str) -> str:
     texts = {
         "submitted": _("This batch is submitted; it can be looked at, not changed."),
         "expired": _("The time for this batch has run out. Open your start page to continue with it."),
+        "protected": _("Imported, hidden and released layers are changed by staff at the browser only."),
         "not_author": _("A worker's annotations are changed by that worker only."),
     }
     return texts.get(reason, reason)

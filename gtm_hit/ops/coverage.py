@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy as np
 from django.conf import settings
 from PIL import Image as Picture
 
+from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.steps import Steps
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Dataset
@@ -45,11 +47,16 @@ class Coverage:
         return sum(number * count for number, count in enumerate(self.counts)) / sum(self.counts)
 
 
-def table(dataset: Dataset, progress: Steps | None = None) -> RectangleTable:
-    """The dataset's rectangle table; built when this machine does not have it yet."""
+def table(
+    dataset: Dataset, progress: Steps | None = None, cameras: Sequence[Camera] | None = None
+) -> RectangleTable:
+    """The dataset's rectangle table; built when this machine does not have it yet.
+
+    `cameras`: those of a calibration read before, which may not be in place any more.
+    """
     return RectangleTable.build(
         settings.TABLES_ROOT,
-        dataset.calibrated_cameras(),
+        cameras if cameras is not None else dataset.calibrated_cameras(),
         dataset.grid,
         dataset.cylinder,
         dataset.rule,

@@ -11,7 +11,7 @@ from pathlib import Path
 from django.conf import settings
 
 from gtm_hit.models import Job
-from gtm_hit.ops import exporting
+from gtm_hit.ops import exporting, table_sweep
 
 OLDEST_UNFINISHED = timedelta(days=1)
 _MADE_BY_JOB = re.compile(r".+-(?P<job>\d+)(?:\.zip)?")
@@ -52,6 +52,7 @@ def delete(job: Job, reason: Removed = Removed.DELETED) -> bool:
 def expire(now: datetime) -> int:
     """Remove what is older than EXPORT_KEEP_DAYS, and what no job knows of; how many exports expired."""
     _remove_unfinished_tables(now)
+    table_sweep.sweep(now)
     if not settings.EXPORT_KEEP_DAYS:
         return 0
     oldest = now - timedelta(days=settings.EXPORT_KEEP_DAYS)

@@ -13,6 +13,7 @@ from gtm_hit.formats.manifest import Manifest, write_manifest
 from gtm_hit.formats.stable_zip import StableZip
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Annotation, Dataset, Layer
+from gtm_hit.ops.calibration.versions import cameras_in, in_place
 from gtm_hit.ops.coverage import table
 from gtm_hit.ops.export_calibrations import UNITS
 from gtm_hit.ops.export_files import ExportFiles
@@ -53,8 +54,10 @@ class ExportFolder:
 
     def write_layer(self) -> None:
         """Everything the formats hold."""
-        self.cameras = self.dataset.calibrated_cameras()
-        rectangles = table(self.dataset, lambda done, total: self.report(TABLE, done, total))
+        # One reading for everything: the calibration may be replaced while this goes on.
+        self.calibration = in_place(self.dataset)
+        self.cameras = cameras_in(self.calibration) if self.calibration else self.dataset.calibrated_cameras()
+        rectangles = table(self.dataset, lambda done, total: self.report(TABLE, done, total), self.cameras)
         with ExitStack() as open_files:
             target = Target(self.files, self.layer, self.cameras, rectangles, self.report, open_files)
             writers = [make(target) for make in self.writers]
@@ -111,6 +114,7 @@ class ExportFolder:
             "frame_step": dataset.frame_step,
             "annotation_offset": dataset.annotation_offset,
             "undistorted": dataset.undistorted,
+            "calibration": self.calibration.number if self.calibration else None,
             "calibration_tvec_unit": UNITS[dataset.rule],
         }
 

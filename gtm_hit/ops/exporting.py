@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import re
 import shutil
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +17,7 @@ from typing import Any
 from django.conf import settings
 from django.contrib.auth.models import User
 
+from gtm_hit.formats.files import sync, sync_tree
 from gtm_hit.formats.manifest import FileEntry, Manifest, read_manifest
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.formats.stable_zip import stable_zip
@@ -99,9 +100,9 @@ def export_layer(
             manifest = ExportFolder(content, packed, layer, report, chosen(formats)).write()
         if not manifest.counts["frames"]:
             raise ExportError(f"Nothing has been saved in the layer {layer.name} yet.")
+        sync_tree(content)
         with holding():
-            replace(content, folder, partial / "before")
-            archive.replace(archive_of(folder))
+            rename_all([(content, folder), (archive, archive_of(folder))], partial / "before")
     return manifest
 
 
@@ -124,11 +125,27 @@ def empty_folder(path: Path) -> Iterator[None]:
         shutil.rmtree(path, ignore_errors=True)
 
 
-def replace(source: Path, target: Path, aside: Path) -> None:
-    """Rename a folder to a name that may be taken; a folder cannot be replaced in one step like a file."""
-    if target.exists():
-        target.replace(aside)
-    source.replace(target)
+def rename_all(wanted: Sequence[tuple[Path, Path]], aside: Path) -> None:
+    """Give files and folders (now, then) names that may be taken: all of them, or none when a rename fails.
+
+    What has the names so far goes to the folder `aside`: a folder cannot be replaced in one step like a file.
+    The names are on the disk afterwards; what they name should be before.
+    """
+    aside.mkdir()
+    renamed: list[tuple[Path, Path]] = []
+    try:
+        for number, (source, target) in enumerate(wanted):
+            if target.exists():
+                target.replace(aside / str(number))
+                renamed.append((target, aside / str(number)))
+            source.replace(target)
+            renamed.append((source, target))
+    except BaseException:
+        for before, now in reversed(renamed):
+            now.replace(before)
+        raise
+    for folder in {target.parent for _source, target in wanted}:
+        sync(folder)
 
 
 def require_replaceable(folder: Path) -> None:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageFile
 
 from gtm_hit.formats.files import write_bytes
+from gtm_hit.formats.jpeg import JpegError, without_metadata
 
 Pixels = NDArray[np.uint8]
 
@@ -110,11 +111,20 @@ def derive(data: bytes, undistort: Undistort | None = None) -> tuple[bytes, byte
     if undistort is not None:
         image = Image.fromarray(undistort(np.asarray(image)))
     icc = profile if len(profile) <= MOST_PROFILE_BYTES else b""
-    full = data if keeps else _jpeg(image, FULL_QUALITY, icc)
+    full = _as_it_came(data) if keeps else None
+    full = full or _jpeg(image, FULL_QUALITY, icc)
     if image.width > LIGHT_WIDTH:
         height = max(1, round(image.height * LIGHT_WIDTH / image.width))
         image = image.resize((LIGHT_WIDTH, height), Image.Resampling.LANCZOS)
     return _jpeg(image, LIGHT_QUALITY, icc), full
+
+
+def _as_it_came(data: bytes) -> bytes | None:
+    """The same pixels, without the place and the serial number that cameras write into a file."""
+    try:
+        return without_metadata(data)
+    except JpegError:
+        return None
 
 
 def is_stored(digest: str) -> bool:
@@ -176,6 +186,12 @@ def _rgb(image: Image.Image) -> Image.Image:
 def _jpeg(image: Image.Image, quality: int, profile: bytes) -> bytes:
     stream = io.BytesIO()
     image.save(
-        stream, "JPEG", quality=quality, subsampling="4:4:4", optimize=True, icc_profile=profile or None
+        stream,
+        "JPEG",
+        quality=quality,
+        subsampling="4:4:4",
+        optimize=True,
+        icc_profile=profile or None,
+        comment=b"",  # Pillow would take the source's along
     )
     return stream.getvalue()

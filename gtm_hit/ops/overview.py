@@ -73,8 +73,10 @@ class BatchCounts:
 
 
 def batch_counts(dataset: Dataset) -> BatchCounts:
+    held = Assignment.objects.filter(batch__dataset=dataset, state__in=Assignment.HOLDING)
     states = dict(
-        Assignment.objects.filter(batch__dataset=dataset, state__in=Assignment.HOLDING)
+        # A lease that ran out holds nothing, though its row says so until the clock comes by.
+        held.exclude(state=Assignment.State.LEASED, expires_at__lte=timezone.now())
         .values_list("state")
         .annotate(count=Count("pk"))
         .order_by()

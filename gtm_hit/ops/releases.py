@@ -14,16 +14,18 @@ from django.contrib.auth.models import User
 from django.db import transaction
 from django.db.models import F, QuerySet
 
+from gtm_hit.formats.files import make_folder, sync_tree
 from gtm_hit.formats.manifest import Manifest, manifest_json
 from gtm_hit.formats.stable_zip import StableZip, stable_zip
-from gtm_hit.models import Dataset, Job, Layer, Release
+from gtm_hit.models import Calibration, Dataset, Job, Layer, Release
 from gtm_hit.ops import exporting, jobs
+from gtm_hit.ops.calibration.versions import in_place
 from gtm_hit.ops.export_folder import FRAMES, TABLE, ExportFolder
 from gtm_hit.ops.export_formats.registry import chosen
 from gtm_hit.ops.export_formats.target import RECTANGLES
 from gtm_hit.ops.jobs_progress import Progress, percents
 from gtm_hit.ops.quality.layer_rows import state_of
-from gtm_hit.ops.quality.statistics import ground_coverage, layer_statistics
+from gtm_hit.ops.quality.statistics import ground_coverage, layer_statistics, unmeasurable
 from gtm_hit.ops.quality.statistics_figures import FIGURES, figure
 from gtm_hit.ops.releasing.changes import CHANGES, write_changes
 from gtm_hit.ops.releasing.provenance import PROVENANCE, ProvenanceWriter
@@ -114,22 +116,22 @@ def make_release(
         content, archive = partial / "content", partial / "content.zip"
         content.mkdir()
         with stable_zip(archive, f"{dataset.slug}-release-{number}") as packed:
-            manifest = _write(order, content, packed, number, before, report)
+            manifest, calibration = _write(order, content, packed, number, before, report)
         _protect(content)
+        sync_tree(content)  # not while the row's transaction keeps others waiting
         if confirm:
             confirm()
         with transaction.atomic():
             Dataset.objects.select_for_update().get(pk=dataset.pk)
             if Release.objects.filter(dataset=dataset, number__gte=number).exists():
                 raise ReleaseError(f"Release {number} was made by somebody else meanwhile; start again.")
-            release = _row(order, number, manifest)
+            release = _row(order, number, manifest, calibration)
             if remember:
                 remember(release)
             target = folder_of(release)
-            target.parent.mkdir(parents=True, exist_ok=True)
+            make_folder(target.parent)
             # Without a row there can only be what a power cut left.
-            exporting.replace(content, target, partial / "before")
-            archive.replace(archive_of(release))
+            exporting.rename_all([(content, target), (archive, archive_of(release))], partial / "before")
     return release
 
 
@@ -138,6 +140,8 @@ def check(order: Order) -> None:
         chosen(order.formats)
     except ValueError as error:
         raise ReleaseError(str(error)) from error
+    if reason := unmeasurable(order.layer.dataset):
+        raise ReleaseError(reason)
     if not order.licence.strip():
         raise ReleaseError("A release needs a licence text.")
     if len(order.licence) > MOST_LICENCE:
@@ -150,8 +154,8 @@ def releases(dataset: Dataset) -> QuerySet[Release]:
     """The newest first, with `counts` out of their manifests, which are long."""
     found = Release.objects.filter(dataset=dataset).order_by("-number")
     return (
-        found.select_related("dataset", "layer", "created_by")
-        .defer("manifest")
+        found.select_related("dataset", "layer", "created_by", "calibration")
+        .defer("manifest", "calibration__cameras")
         .annotate(counts=F("manifest__counts"))
     )
 
@@ -183,7 +187,7 @@ def figure_of(release: Release, name: str) -> str:
 
 def _write(
     order: Order, content: Path, packed: StableZip, number: int, before: Release | None, report: Progress
-) -> Manifest:
+) -> tuple[Manifest, Calibration | None]:
     layer, dataset = order.layer, order.layer.dataset
     state = state_of(layer)
     export = ExportFolder(content, packed, layer, report, chosen(order.formats), more=[ProvenanceWriter])
@@ -204,7 +208,11 @@ def _write(
     files.write("README.md", words.encode())
     if state_of(layer) != state:
         raise ReleaseError(f"The layer {layer.name} was changed while it was released; start again.")
-    return export.seal(release=number, title=order.title, since=since, changes=changes)
+    # The statistics and their figures read the cameras for themselves.
+    if in_place(dataset) != export.calibration:
+        raise ReleaseError("The calibration was replaced while the layer was released; start again.")
+    manifest = export.seal(release=number, title=order.title, since=since, changes=changes)
+    return manifest, export.calibration
 
 
 def _protect(folder: Path) -> None:
@@ -213,13 +221,14 @@ def _protect(folder: Path) -> None:
             path.chmod(0o444)
 
 
-def _row(order: Order, number: int, manifest: Manifest) -> Release:
+def _row(order: Order, number: int, manifest: Manifest, calibration: Calibration | None) -> Release:
     data = manifest_json(manifest)
     return Release.objects.create(
         dataset=order.layer.dataset,
         number=number,
         layer=order.layer,
         title=order.title,
+        calibration=calibration,
         manifest=json.loads(data),
         manifest_digest=hashlib.sha256(data).hexdigest(),
         created_by=order.user,

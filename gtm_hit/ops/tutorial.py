@@ -13,10 +13,17 @@ from django.utils.translation import gettext as _
 from numpy.typing import NDArray
 
 from gtm_hit.geometry.cylinder import rectangles
-from gtm_hit.models import Annotation, Dataset, Frame, Layer, Worker
+from gtm_hit.models import Annotation, Dataset, Frame, Layer, Save, Worker
 from gtm_hit.ops.annotation_rules import Row, checked
 from gtm_hit.ops.annotations import FrameState
-from gtm_hit.ops.tutorial_exercise import Exercise, NoRoom, Positions, between, make_exercise
+from gtm_hit.ops.tutorial_exercise import (
+    Exercise,
+    NoRoom,
+    Positions,
+    between,
+    has_people,
+    make_exercise,
+)
 
 FRAMES = 3
 NEAR_ENOUGH = 0.15 + 1e-6  # metres; six grid steps of 2.5 cm are not quite 0.15
@@ -75,20 +82,14 @@ def row_of(person: int, position: int, yellow: bool) -> Row:
 
 def load() -> Tutorial:
     """The tutorial of settings.TUTORIAL_DATASET; raises NoTutorial."""
-    dataset = Dataset.objects.filter(slug=settings.TUTORIAL_DATASET).first()
-    layers = Layer.objects.filter(dataset=dataset, hidden=True, kind=Layer.Kind.GROUND_TRUTH)
-    layer = layers.order_by("pk").first() if dataset else None
-    if dataset is None or layer is None:
+    layer = hidden_truth()
+    if layer is None:
         raise NoTutorial(f"no dataset {settings.TUTORIAL_DATASET!r} with a hidden truth")
-    frames = shown_frames()
-    truth: dict[int, Positions] = {frame.pk: {} for frame in frames}
-    rows = Annotation.objects.filter(layer=layer, frame__in=frames)
-    for frame_id, person, position in rows.values_list("frame_id", "person", "position"):
-        truth[frame_id][person] = position
+    dataset, frames = layer.dataset, shown_frames()
     try:
         exercise = make_exercise(
             [frame.number for frame in frames],
-            [truth[frame.pk] for frame in frames],
+            truth_of(layer, frames),
             dataset.grid,
             lambda places, others: clear_views(dataset, places, others),
         )
@@ -102,12 +103,32 @@ def shown_frames() -> list[Frame]:
     return list(frames.order_by("number")[:FRAMES])
 
 
+def hidden_truth() -> Layer | None:
+    layers = Layer.objects.filter(hidden=True, kind=Layer.Kind.GROUND_TRUTH)
+    layers = layers.filter(dataset__slug=settings.TUTORIAL_DATASET)
+    return layers.select_related("dataset").order_by("pk").first()
+
+
+def truth_of(layer: Layer, frames: list[Frame]) -> list[Positions]:
+    """Everybody of each frame. A frame that was imported counts as it was then, whoever edited it since."""
+    imported = Save.objects.filter(
+        layer_frame__layer=layer, layer_frame__frame__in=frames, revision=1, user=None, worker=None
+    )
+    truth: dict[int, Positions] = {
+        frame_id: {row["person"]: row["position"] for row in rows}
+        for frame_id, rows in imported.values_list("layer_frame__frame_id", "annotations")
+    }
+    others = [frame.pk for frame in frames if frame.pk not in truth]
+    present = Annotation.objects.filter(layer=layer, frame__in=others)
+    for frame_id, person, position in present.values_list("frame_id", "person", "position"):
+        truth.setdefault(frame_id, {})[person] = position
+    return [truth.get(frame.pk, {}) for frame in frames]
+
+
 def available() -> bool:
-    try:
-        load()
-    except NoTutorial:
-        return False
-    return True
+    """Whether there are people enough. Every page of a worker asks, so the exercise itself is not made."""
+    layer = hidden_truth()
+    return layer is not None and has_people(truth_of(layer, shown_frames()))
 
 
 def clear_views(dataset: Dataset, places: list[int], others: list[int]) -> NDArray[np.int64]:

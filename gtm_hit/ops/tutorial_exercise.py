@@ -57,9 +57,13 @@ class Exercise:
         return max(self.invented, *(person for people in self.truth for person in people)) + 1
 
 
+def has_people(truth: list[Positions]) -> bool:
+    return len(truth) == 3 and len(truth[0]) >= 3 and len(truth[0].keys() & truth[1].keys()) >= 2
+
+
 def make_exercise(numbers: list[int], truth: list[Positions], grid: Grid, views: Views) -> Exercise:
     """Raises NoRoom."""
-    if len(truth) != 3 or len(truth[0]) < 3 or len(truth[0].keys() & truth[1].keys()) < 2:
+    if not has_people(truth):
         raise NoRoom("the tutorial needs three frames and three people")
     first, second = truth[0], truth[1]
     missing, shifted = clearest(first, grid, views)[:2]

@@ -18,7 +18,7 @@ from gtm_hit.ops import overview, uploads
 from gtm_hit.ops.annotation_import import job as importing
 from gtm_hit.ops.annotation_import.findings import Kind
 from gtm_hit.pages.access import StaffRequest
-from gtm_hit.pages.datasets import summary_or_404
+from gtm_hit.pages.datasets import dataset_or_404
 from gtm_hit.pages.uploads import takes_uploads
 
 JOBS_SHOWN = 10
@@ -69,7 +69,7 @@ class AnnotationsForm(forms.Form):
 @require_http_methods(["GET", "HEAD", "POST"])
 @takes_uploads
 def import_annotations(request: StaffRequest, slug: str) -> HttpResponse:
-    dataset = summary_or_404(slug).dataset
+    dataset = dataset_or_404(slug)
     form = AnnotationsForm(request.POST or None, request.FILES or None)
     if request.method == "POST" and form.is_valid() and (source := _chosen(form)):
         chosen = form.cleaned_data

@@ -11,7 +11,7 @@ from django.views.decorators.http import require_http_methods, require_POST
 
 from gtm_hit.ops import batches, entry_links, overview, tokens
 from gtm_hit.pages.access import staff_only
-from gtm_hit.pages.datasets import summary_or_404
+from gtm_hit.pages.datasets import dataset_or_404
 
 ROWS_PER_PAGE = 100
 
@@ -28,24 +28,24 @@ class MakeBatchesForm(forms.Form):
 @require_http_methods(["GET", "HEAD", "POST"])
 @staff_only
 def dataset_batches(request: HttpRequest, slug: str) -> HttpResponse:
-    summary = summary_or_404(slug)
+    dataset = dataset_or_404(slug)
     form = MakeBatchesForm(request.POST or None)
     if request.method == "POST" and form.is_valid():
-        added = batches.make_batches(summary.dataset, **form.cleaned_data)
+        added = batches.make_batches(dataset, **form.cleaned_data)
         text = ngettext("%(count)d batch was added.", "%(count)d batches were added.", added)
         messages.success(request, text % {"count": added})
         return redirect("dataset-batches", slug=slug)
-    page = Paginator(overview.batches(summary.dataset), ROWS_PER_PAGE).get_page(request.GET.get("page"))
+    page = Paginator(overview.batches(dataset), ROWS_PER_PAGE).get_page(request.GET.get("page"))
     context = {
         "section": "datasets",
         "tab": "batches",
-        "dataset": summary.dataset,
-        "counts": overview.batch_counts(summary.dataset),
+        "dataset": dataset,
+        "counts": overview.batch_counts(dataset),
         "page": page,
         "rows": overview.with_assignments(page.object_list),
         "form": form,
-        "closed": entry_links.state(summary.dataset, "link").closed_at is not None,
-        "entry_link": request.build_absolute_uri(reverse("join", args=[tokens.entry_token(summary.dataset)])),
+        "closed": entry_links.state(dataset, "link").closed_at is not None,
+        "entry_link": request.build_absolute_uri(reverse("join", args=[tokens.entry_token(dataset)])),
     }
     return render(request, "staff/batches.html", context)
 
@@ -55,7 +55,7 @@ def dataset_batches(request: HttpRequest, slug: str) -> HttpResponse:
 def switch_link(request: HttpRequest, slug: str) -> HttpResponse:
     switch = {"close": entry_links.close, "open": entry_links.reopen}.get(request.POST.get("switch", ""))
     if switch is not None:
-        switch(summary_or_404(slug).dataset, "link")
+        switch(dataset_or_404(slug), "link")
     return redirect("dataset-batches", slug=slug)
 
 

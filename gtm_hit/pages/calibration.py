@@ -17,11 +17,12 @@ from gtm_hit.formats.problems import FormatError
 from gtm_hit.models import Dataset, Job
 from gtm_hit.ops import overview
 from gtm_hit.ops.calibration import job as calibration_job
+from gtm_hit.ops.calibration import versions
 from gtm_hit.ops.calibration.reading import MOST_BYTES, read_upload
 from gtm_hit.ops.calibration.replacing import ReplacementError
 from gtm_hit.ops.importing.calibrations import UNITS
 from gtm_hit.pages.access import StaffRequest, staff_only
-from gtm_hit.pages.datasets import summary_or_404
+from gtm_hit.pages.datasets import dataset_or_404
 from gtm_hit.pages.uploads import takes_uploads
 
 ROWS_SHOWN = 20
@@ -58,7 +59,7 @@ class View:
 @require_http_methods(["GET", "HEAD", "POST"])
 @takes_uploads
 def calibration(request: StaffRequest, slug: str) -> HttpResponse:
-    dataset = summary_or_404(slug).dataset
+    dataset = dataset_or_404(slug)
     form = CalibrationForm(request.POST or None, request.FILES or None)
     if request.method == "POST" and form.is_valid():
         try:
@@ -67,7 +68,8 @@ def calibration(request: StaffRequest, slug: str) -> HttpResponse:
             for problem in error.problems:
                 form.add_error("file", str(problem))
         else:
-            return redirect("job", pk=calibration_job.start(dataset, cameras, request.user).pk)
+            source = form.cleaned_data["file"].name
+            return redirect("job", pk=calibration_job.start(dataset, cameras, request.user, source).pk)
     context = {
         "section": "datasets",
         "tab": "calibration",
@@ -77,9 +79,20 @@ def calibration(request: StaffRequest, slug: str) -> HttpResponse:
             (row.name, row.width, row.height, row.calibrated.centre.tolist(), row.matrix, any(row.distortion))
             for row in dataset.cameras.all()
         ],
+        "versions": versions.versions(dataset)[:ROWS_SHOWN],
         "jobs": _jobs().filter(dataset=dataset)[:ROWS_SHOWN],
     }
     return render(request, "staff/imports/calibration.html", context)
+
+
+@require_POST
+@staff_only
+def compare_version(request: StaffRequest, slug: str, number: int) -> HttpResponse:
+    dataset = dataset_or_404(slug)
+    try:
+        return redirect("job", pk=calibration_job.start_version(dataset, number, request.user).pk)
+    except versions.UnknownVersion as error:
+        raise Http404(str(error)) from error
 
 
 @require_safe
@@ -88,7 +101,7 @@ def preview(request: HttpRequest, slug: str, pk: int) -> HttpResponse:
     job = get_object_or_404(_jobs(), pk=pk, dataset__slug=slug)
     if job.state != Job.State.DONE:
         return redirect("job", pk=pk)
-    dataset = summary_or_404(slug).dataset
+    dataset = dataset_or_404(slug)
     context = {
         "section": "datasets",
         "tab": "calibration",
@@ -145,6 +158,11 @@ def _sized(box: list[int]) -> tuple[int, int, int, int]:
 
 urlpatterns = [
     path("datasets/<slug:slug>/calibration/", calibration, name="dataset-calibration"),
+    path(
+        "datasets/<slug:slug>/calibration/versions/<int:number>/compare/",
+        compare_version,
+        name="calibration-version",
+    ),
     path("datasets/<slug:slug>/calibration/<int:pk>/", preview, name="calibration-preview"),
     path("datasets/<slug:slug>/calibration/<int:pk>/confirm/", confirm, name="calibration-confirm"),
 ]

@@ -33,7 +33,7 @@ from gtm_hit.ops.quality.comparing import (
 )
 from gtm_hit.ops.quality.layer_rows import QualityError
 from gtm_hit.pages.access import staff_only
-from gtm_hit.pages.datasets import summary_or_404
+from gtm_hit.pages.datasets import dataset_or_404
 from gtm_hit.pages.layer_choice import LayerChoice
 from gtm_hit.pages.statistics import attachment
 
@@ -74,7 +74,7 @@ class Asked:
 
 
 def asked_for(request: HttpRequest, slug: str) -> Asked:
-    dataset = summary_or_404(slug).dataset
+    dataset = dataset_or_404(slug)
     given = {name: request.GET[name] for name in CompareForm.base_fields if request.GET.get(name)}
     choice = LayerChoice(dataset, given.get("a"), given.get("b"))
     first = [layer.name for layer in choice.listed[:2]]

@@ -7,6 +7,7 @@ from django.utils.translation import gettext as _
 from django.views.decorators.cache import cache_control
 from django.views.decorators.http import require_safe
 
+from gtm_hit.models import Dataset
 from gtm_hit.ops import coverage, overview
 from gtm_hit.pages.access import staff_only
 from gtm_hit.pages.ground_map import GroundMap
@@ -17,6 +18,14 @@ def summary_or_404(slug: str) -> overview.DatasetSummary:
     if summary is None:
         raise Http404(_("There is no dataset “%(slug)s”.") % {"slug": slug})
     return summary
+
+
+def dataset_or_404(slug: str) -> Dataset:
+    """For pages that count nothing."""
+    found = Dataset.objects.filter(slug=slug).first()
+    if found is None:
+        raise Http404(_("There is no dataset “%(slug)s”.") % {"slug": slug})
+    return found
 
 
 @require_safe
@@ -46,7 +55,7 @@ def dataset(request: HttpRequest, slug: str) -> HttpResponse:
 @cache_control(private=True, max_age=31536000, immutable=True)
 def coverage_picture(request: HttpRequest, slug: str, digest: str) -> HttpResponse:
     """The address carries the digest of everything the picture is made from, so it never changes."""
-    seen = coverage.coverage(summary_or_404(slug).dataset)
+    seen = coverage.coverage(dataset_or_404(slug))
     if seen.digest != digest:
         raise Http404(_("The dataset's cameras or grid have changed."))
     return HttpResponse(seen.picture, content_type="image/png")

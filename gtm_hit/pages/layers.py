@@ -11,7 +11,7 @@ from gtm_hit.models import Layer
 from gtm_hit.ops import exporting, overview, parts
 from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, FORMATS
 from gtm_hit.pages.access import StaffRequest, staff_only
-from gtm_hit.pages.datasets import summary_or_404
+from gtm_hit.pages.datasets import dataset_or_404
 
 ROWS_PER_PAGE = 100
 
@@ -19,14 +19,15 @@ ROWS_PER_PAGE = 100
 @require_safe
 @staff_only
 def dataset_layers(request: HttpRequest, slug: str) -> HttpResponse:
-    summary = summary_or_404(slug)
-    page = Paginator(overview.layers(summary.dataset), ROWS_PER_PAGE).get_page(request.GET.get("page"))
+    dataset = dataset_or_404(slug)
+    frames = dataset.frames.count()
+    page = Paginator(overview.layers(dataset), ROWS_PER_PAGE).get_page(request.GET.get("page"))
     context = {
         "section": "datasets",
         "tab": "layers",
-        "dataset": summary.dataset,
-        "frames": summary.frames,
-        "long": parts.is_long(summary.frames),
+        "dataset": dataset,
+        "frames": frames,
+        "long": parts.is_long(frames),
         "page": page,
         "formats": FORMATS,
         "default_formats": DEFAULT_FORMATS,

@@ -17,7 +17,7 @@ from gtm_hit.ops import overview, releases
 from gtm_hit.ops.export_formats.registry import FORMATS
 from gtm_hit.ops.quality.statistics_figures import FIGURES
 from gtm_hit.pages.access import StaffRequest, staff_only
-from gtm_hit.pages.datasets import summary_or_404
+from gtm_hit.pages.datasets import dataset_or_404
 
 ROWS_PER_PAGE = 50
 FILES_SHOWN = 200
@@ -49,7 +49,7 @@ class ReleaseForm(forms.Form):
 @require_http_methods(["GET", "HEAD", "POST"])
 @staff_only
 def dataset_releases(request: StaffRequest, slug: str) -> HttpResponse:
-    dataset = summary_or_404(slug).dataset
+    dataset = dataset_or_404(slug)
     layers = Layer.objects.select_related("dataset").filter(dataset=dataset).order_by("name")
     layers = layers.filter(layer_frames__revision__gte=1).distinct()
     truth = layers.filter(kind=Layer.Kind.GROUND_TRUTH).first()

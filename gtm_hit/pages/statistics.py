@@ -18,11 +18,17 @@ from django.views.decorators.http import require_safe
 
 from gtm_hit.metrics.coverage import Coverage
 from gtm_hit.models import Layer
-from gtm_hit.ops.quality.statistics import EVERY, LayerStatistics, ground_coverage, layer_statistics
+from gtm_hit.ops.quality.statistics import (
+    EVERY,
+    LayerStatistics,
+    ground_coverage,
+    layer_statistics,
+    unmeasurable,
+)
 from gtm_hit.ops.quality.statistics_figures import FIGURES, figure
 from gtm_hit.ops.quality.statistics_files import numbers_csv
 from gtm_hit.pages.access import staff_only
-from gtm_hit.pages.datasets import summary_or_404
+from gtm_hit.pages.datasets import dataset_or_404
 from gtm_hit.pages.layer_choice import LayerChoice
 
 STEPS = [1, 2, 4, 8, 16, 32]
@@ -57,16 +63,17 @@ class Asked:
 
 
 def asked_for(request: HttpRequest, slug: str) -> Asked:
-    summary = summary_or_404(slug)
-    dataset = summary.dataset
+    dataset = dataset_or_404(slug)
     name = request.GET.get("layer")
     choice = LayerChoice(dataset, name)
     first = choice.listed[0].name if choice.listed else ""
     form = StatisticsForm({"layer": name or first, "every": request.GET.get("every") or EVERY})
     form.fields["layer"].choices = choice.choices  # type: ignore[attr-defined]
     context = {"section": "datasets", "tab": "statistics", "dataset": dataset, "form": form}
-    if not summary.cameras:
+    if not dataset.cameras.exists():
         return Asked(context, None, EVERY, _("This dataset has no cameras."))
+    if reason := unmeasurable(dataset):
+        return Asked(context, None, EVERY, reason)
     if not choice.listed:
         return Asked(context, None, EVERY, _("This dataset has no layers yet."))
     if not form.is_valid():

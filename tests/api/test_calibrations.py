@@ -112,3 +112,38 @@ def test_what_is_no_calibration_is_refused_with_its_place(square: Dataset, conte
 def test_a_file_too_large_is_not_read(square: Dataset) -> None:
     response = send(bearer("import"), square, b" " * 12_000_000)
     assert (response.status_code, response.json()["code"]) == (413, "too_large")
+
+
+def test_versions_are_listed_with_the_one_in_place(square: Dataset, file: bytes) -> None:
+    script = bearer("read", "import")
+    confirmed = script.post(compared(script, square, file) + "confirm/").json()
+    assert confirmed["calibration"] == 2
+    found = script.get(address(square) + "versions/").json()["results"]
+    told = [(each["number"], each["in_place"], each["source"]) for each in found]
+    assert told == [(2, True, "cameras.json"), (1, False, "import")]
+
+
+def test_a_version_is_read_with_its_cameras(square: Dataset) -> None:
+    found = bearer("read").get(address(square) + "versions/1/").json()
+    assert found["number"] == 1 and found["cameras"]["format"] == "gtm-cameras"
+    assert found["cameras"]["cameras"][1]["matrix"] == square.cameras.get(index=1).matrix
+    assert bearer("read").get(address(square) + "versions/2/").status_code == 404
+
+
+def test_an_earlier_version_is_compared_and_put_in_place_again(square: Dataset, file: bytes) -> None:
+    before = calibrations(square)
+    script = bearer("read", "import")
+    script.post(compared(script, square, file) + "confirm/")
+    started = script.client.post(address(square), {"version": 1}, headers=script.headers)
+    assert started.status_code == 202 and calibrations(square) != before
+    jobs.run(started.json()["id"], OPERATIONS)
+    confirmed = script.post(f"{address(square)}{started.json()['id']}/confirm/").json()
+    assert confirmed["calibration"] == 1 and calibrations(square) == before
+
+
+@pytest.mark.parametrize("given", [{}, {"version": 7}, {"version": 0}, {"version": "one"}])
+def test_a_comparison_wants_a_file_or_a_version_there_is(square: Dataset, given: dict[str, Any]) -> None:
+    script = bearer("import")
+    response = script.client.post(address(square), given, headers=script.headers)
+    assert (response.status_code, response.json()["code"]) == (400, "invalid")
+    assert not Job.objects.exists()

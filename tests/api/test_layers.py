@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from gtm_hit.models import Assignment, Layer, Save
-from tests.api.conftest import Caller, body
+from gtm_hit.models import Assignment, Layer, Release, Save
+from tests.api.conftest import Caller, bearer, body
 from tests.work_scene import add_frames, make_dataset, make_layer, row, save
 
 
@@ -110,3 +110,32 @@ def test_a_hidden_layer_is_for_staff(staff: Caller, alice: Caller, assignment: A
     path = f"/api/v1/layers/{hidden.pk}/frames/"
     assert staff.get(path).status_code == 200
     assert alice.get(path).status_code == 401
+
+
+@pytest.mark.parametrize(
+    ("kind", "hidden"),
+    [(Layer.Kind.GROUND_TRUTH, True), (Layer.Kind.IMPORTED, False), (Layer.Kind.STAFF, True)],
+)
+def test_a_script_does_not_overwrite_what_was_imported_or_is_hidden(
+    layer: Layer, kind: Layer.Kind, hidden: bool
+) -> None:
+    kept = make_layer(layer.dataset, "kept", kind, hidden=hidden)
+    script = bearer("read", "work")
+    response = script.put(f"/api/v1/layers/{kept.pk}/frames/5/", body(people=[row()]))
+    assert (response.status_code, response.json()["code"]) == (403, "read_only")
+    assert response.json()["details"]["reason"] == "protected"
+    scene = script.get(f"/api/v1/layers/{kept.pk}/scene/").json()
+    assert scene["editable"] is False and "staff at the browser" in scene["read_only_reason"]
+    assert not Save.objects.exists()
+
+
+def test_a_script_does_not_overwrite_what_was_released(layer: Layer, base: str) -> None:
+    script = bearer("work")
+    assert script.put(base + "frames/5/", body(people=[row()])).status_code == 200
+    Release.objects.create(dataset=layer.dataset, layer=layer, number=1, manifest={}, manifest_digest="")
+    assert script.put(base + "frames/10/", body(people=[row()])).status_code == 403
+
+
+def test_staff_at_the_browser_mend_a_hidden_truth(staff: Caller, layer: Layer) -> None:
+    truth = make_layer(layer.dataset, "truth", Layer.Kind.GROUND_TRUTH, hidden=True)
+    assert staff.put(f"/api/v1/layers/{truth.pk}/frames/5/", body(people=[row()])).status_code == 200

@@ -174,3 +174,23 @@ def test_the_link_is_closed_and_made_anew(dataset: Dataset, staff: Caller) -> No
 def test_closing_the_link_takes_the_scope_to_work(dataset: Dataset) -> None:
     reader = bearer("read", "import", "release")
     assert reader.post(BASE + "link/", {"closed": True}).status_code == 403
+
+
+def crowd(people: int, frames: int = 1) -> str:
+    return "".join(f"{frame} {column} 0\n" for frame in range(frames) for column in range(people))
+
+
+def test_a_crowd_that_would_fill_the_memory_is_refused(db: None) -> None:
+    response = send(bearer("read"), crowd(6000), crowd(6000))
+    assert (response.status_code, response.json()["code"]) == (400, "invalid")
+    assert "6000 people are in frame 0; at most 500" in response.json()["details"][0]["reason"]
+
+
+def test_a_request_for_too_many_pairs_is_refused(db: None) -> None:
+    response = send(bearer("read"), crowd(500, 41), crowd(500, 41))
+    assert response.status_code == 400 and "pairs of people" in response.json()["details"][0]["reason"]
+
+
+def test_a_full_frame_is_compared(db: None) -> None:
+    response = send(bearer("read"), crowd(500), crowd(500))
+    assert response.status_code == 200 and response.json()["matched"] == 500

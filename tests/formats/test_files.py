@@ -7,6 +7,7 @@ import pytest
 
 from gtm_hit.formats.files import read_source, replacing, write_bytes
 from gtm_hit.formats.problems import FormatError
+from tests.disk_events import recorded
 
 
 def test_a_source_is_read_whole(tmp_path: Path) -> None:
@@ -60,3 +61,14 @@ def test_a_failed_write_leaves_the_old_file_and_no_temporary_one(tmp_path: Path)
 def test_a_written_file_can_be_read_by_others(tmp_path: Path) -> None:
     write_bytes(tmp_path / "a", b"x")
     assert (tmp_path / "a").stat().st_mode & 0o777 == 0o644
+
+
+def test_bytes_are_on_the_disk_before_their_name_and_the_name_before_the_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    events = recorded(monkeypatch)
+    write_bytes(tmp_path / "new" / "a", b"x")
+    (made, folder), (first, temporary), *rest = events
+    assert (made, folder) == ("sync", tmp_path)  # the new folder's own name
+    assert first == "sync" and temporary.name.startswith(".a.")
+    assert rest == [("rename", tmp_path / "new" / "a"), ("sync", tmp_path / "new")]

@@ -20,6 +20,7 @@ from gtm_hit.models import Annotation, Dataset, Frame, Job, Layer, LayerFrame
 from gtm_hit.ops import export_frames, exporting, jobs
 from gtm_hit.ops.coverage import table
 from gtm_hit.ops.export_calibrations import published_names
+from tests.disk_events import recorded
 from tests.work_scene import make_dataset, make_layer
 
 pytestmark = pytest.mark.django_db
@@ -273,6 +274,38 @@ def test_a_failure_leaves_the_earlier_export_as_it_was(layer: Layer, tmp_path: P
     with pytest.raises(jobs.JobLost):
         exporting.export_layer(layer, folder, tmp_path / "partial", lambda *_: None, lost)
     assert before == ((folder / "manifest.json").read_bytes(), (tmp_path / "out.zip").read_bytes())
+
+
+@pytest.mark.parametrize("name", ["out", "out.zip"])
+def test_a_rename_that_fails_leaves_the_earlier_export_as_it_was(
+    layer: Layer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    folder = export(layer, tmp_path / "out")
+    before = (folder / "manifest.json").read_bytes(), (tmp_path / "out.zip").read_bytes()
+    save(layer, 5, [(1, MIDDLE, {})])
+    replace = Path.replace
+
+    def failing(path: Path, target: Path) -> Path:
+        if target == tmp_path / name and path.name.startswith("content"):
+            raise OSError("no space for a longer folder")
+        return replace(path, target)
+
+    monkeypatch.setattr(Path, "replace", failing)
+    with pytest.raises(OSError):
+        exporting.export_layer(layer, folder, tmp_path / "partial", lambda *_: None)
+    assert before == ((folder / "manifest.json").read_bytes(), (tmp_path / "out.zip").read_bytes())
+    assert not (tmp_path / "partial").exists()
+
+
+def test_an_export_is_on_the_disk_before_it_gets_its_name(
+    layer: Layer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    events = recorded(monkeypatch)
+    folder = export(layer, tmp_path / "out")
+    named = events.index(("rename", folder))
+    synced = {path.name for kind, path in events[:named] if kind == "sync"}
+    assert synced >= {path.name for path in folder.rglob("*")}
+    assert events[-1] == ("sync", tmp_path)
 
 
 def test_an_earlier_export_is_replaced_whole(layer: Layer, tmp_path: Path) -> None:

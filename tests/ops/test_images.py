@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import contextlib
 import io
 import math
 from pathlib import Path
@@ -12,8 +13,9 @@ from django.core.files.base import ContentFile
 from django.core.files.storage import InMemoryStorage, default_storage
 from hypothesis import given
 from hypothesis import strategies as st
-from PIL import Image
+from PIL import Image, ImageCms
 
+from gtm_hit.formats.jpeg import JpegError, without_metadata
 from gtm_hit.geometry.camera import Camera, undistort_maps
 from gtm_hit.ops import images
 from gtm_hit.ops.images import ImageError, decode, derive, header_size, make_derivatives, remapper, store
@@ -206,3 +208,46 @@ def test_undistortion_brings_a_point_to_where_the_camera_without_lens_sees_it() 
     found = np.argwhere(np.asarray(opened(full).convert("L")) > 128).mean(axis=0)[::-1]
     assert found == pytest.approx(ideal.ravel(), abs=1)
     assert np.linalg.norm(seen - ideal) > 5
+
+
+# What cameras write beside the picture
+
+
+def revealing(**how: Any) -> bytes:
+    """A JPEG as a phone makes it: maker, serial number, place, comment, XMP, and something behind its end."""
+    exif = Image.Exif()
+    exif[0x010F], exif[0xA431] = "Maker", "SN-1234567"
+    exif.get_ifd(0x8825).update({1: "N", 2: (46.0, 31.0, 7.0)})
+    xmp = b"<x:xmpmeta>SN-1234567</x:xmpmeta>"
+    data = encoded(opened(WIDE), "JPEG", exif=exif, comment=b"SN-1234567", xmp=xmp, quality=90, **how)
+    return data + b"SN-1234567"
+
+
+@pytest.mark.parametrize("how", [{}, {"progressive": True}, {"subsampling": "4:4:4"}])
+def test_workers_get_no_exif_and_no_comment_but_every_pixel(how: dict[str, Any]) -> None:
+    source = revealing(**how)
+    light, full = derive(source)
+    for each in (light, full):
+        assert b"SN-1234567" not in each and b"Exif" not in each
+        assert not opened(each).getexif() and "comment" not in opened(each).info
+    assert np.array_equal(np.asarray(opened(full)), np.asarray(opened(source)))
+
+
+def test_a_picture_made_anew_takes_no_comment_along() -> None:
+    exif = Image.Exif()
+    exif[0x0112] = 6
+    source = encoded(opened(WIDE), "JPEG", exif=exif, comment=b"SN-1234567")
+    assert all(b"SN-1234567" not in each for each in derive(source))
+
+
+def test_colours_keep_their_profile() -> None:
+    profile = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
+    for each in derive(revealing(icc_profile=profile)):
+        assert opened(each).info["icc_profile"] == profile
+
+
+@given(part=st.floats(0, 1))
+def test_half_a_jpeg_is_refused_or_loses_its_metadata(part: float) -> None:
+    source = revealing()[: round(len(WIDE) * part)]
+    with contextlib.suppress(JpegError):
+        assert b"SN-1234567" not in without_metadata(source)

@@ -14,6 +14,7 @@ from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Annotation, Dataset, Frame, Image, Layer, LayerFrame, Save
 from gtm_hit.ops import annotations as annotation_ops
 from gtm_hit.ops.annotation_rules import checked
+from gtm_hit.ops.coverage import table as table_of
 from gtm_hit.ops.images import storage_name
 from gtm_hit.ops.importing.dataset import ImportFailed, import_dataset
 from tests.dataset_folder import (
@@ -95,7 +96,7 @@ def test_an_image_remembers_the_file_it_was_made_from(folder: Path) -> None:
 
 def test_the_rectangle_table_of_the_dataset_is_there(folder: Path, tmp_path: Path) -> None:
     dataset = import_dataset(options(folder)).dataset
-    table = RectangleTable.open(tmp_path / "tables" / f"rectangles-{dataset.table_digest}.bin")
+    table = RectangleTable.open(tmp_path / "tables" / f"rectangles-{table_of(dataset).digest}.bin")
     assert (table.cameras_count, table.grid) == (3, dataset.grid)
 
 

@@ -21,6 +21,7 @@ from gtm_hit.geometry.camera import back_project
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Annotation, Dataset, Frame, Image
+from gtm_hit.ops.coverage import table as table_of
 from gtm_hit.ops.images import derive
 from gtm_hit.ops.importing.calibrations import View, read_views
 from tests.dataset_folder import make_folder
@@ -75,7 +76,7 @@ def test_wildtrack_comes_in_undistorted(wildtrack: Dataset, tmp_path: Path) -> N
     assert all(not camera.has_lens for camera in wildtrack.calibrated_cameras())
     assert [camera.name for camera in wildtrack.cameras.all()] == [f"C{index}" for index in range(1, 8)]
     # Visible rectangles of the published table.
-    table = RectangleTable.open(tmp_path / "tables" / f"rectangles-{wildtrack.table_digest}.bin")
+    table = RectangleTable.open(tmp_path / "tables" / f"rectangles-{table_of(wildtrack).digest}.bin")
     assert int(table.visible(0).sum()) == 559_488
     assert sum(int(table.visible(index).sum()) for index in range(7)) == 2_722_248
 

@@ -17,6 +17,7 @@ from gtm_hit.formats.manifest import verify
 from gtm_hit.models import AppendOnlyError, Assignment, Dataset, Frame, Job, Layer, Release
 from gtm_hit.ops import annotations, assignments, batches, jobs, releases
 from gtm_hit.tasks import OPERATIONS
+from tests.disk_events import recorded
 from tests.ops.square_layer import fill, make_square
 from tests.work_scene import finish, make_layer, make_worker, row
 
@@ -259,3 +260,15 @@ def test_the_command_releases_and_says_where(layer: Layer, tmp_path: Path) -> No
 def test_the_command_names_the_layers_there_are(layer: Layer, tmp_path: Path) -> None:
     with pytest.raises(CommandError, match="there are: truth"):
         call_command("makerelease", "square", "nothing", "--licence", str(tmp_path))
+
+
+def test_a_releases_files_are_on_the_disk_before_its_row_is_there(
+    layer: Layer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    events = recorded(monkeypatch)
+    found = release(layer)
+    folder = releases.folder_of(found)
+    named = events.index(("rename", folder))
+    synced = {path.name for kind, path in events[:named] if kind == "sync"}
+    assert synced >= {path.name for path in folder.rglob("*")}
+    assert ("sync", folder.parent) in events[named:]

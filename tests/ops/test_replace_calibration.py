@@ -21,6 +21,7 @@ from gtm_hit.ops.calibration import job as calibration_job
 from gtm_hit.ops.calibration import replacing
 from gtm_hit.ops.calibration.reading import read_replacement
 from gtm_hit.ops.calibration.replacing import ReplacementError, preview, replace_calibration
+from gtm_hit.ops.coverage import table
 from gtm_hit.ops.importing.dataset import import_dataset
 from tests.dataset_folder import NAMES, PEOPLE, add_calibrations, cameras, make_folder, options
 from tests.work_scene import row
@@ -123,10 +124,10 @@ def test_the_picture_has_a_lattice_where_nobody_is_annotated(dataset: Dataset) -
 
 
 def test_a_preview_changes_nothing(dataset: Dataset) -> None:
-    before = calibrations(dataset), dataset.table_digest
+    before = calibrations(dataset), dataset.calibration
     preview(dataset, shifted(), no_progress)
     dataset.refresh_from_db()
-    assert (calibrations(dataset), dataset.table_digest) == before
+    assert (calibrations(dataset), dataset.calibration) == before
 
 
 # Putting it in place
@@ -140,7 +141,7 @@ def test_positions_stay_and_cameras_and_table_change_together(dataset: Dataset) 
     assert list(Annotation.objects.values_list("pk", "position")) == positions
     assert calibrations(dataset) == [camera.matrix.ravel().tolist() for camera in new]
     expected = table_digest(new, dataset.grid, dataset.cylinder, dataset.rule)
-    assert dataset.table_digest == expected
+    assert table(dataset).digest == expected
 
 
 def test_images_stay_with_their_cameras(dataset: Dataset) -> None:

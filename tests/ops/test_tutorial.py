@@ -1,12 +1,16 @@
 from __future__ import annotations
 
+import uuid
+
 import pytest
+from django.contrib.auth.models import User
 
 from gtm_hit.models import Annotation, Dataset, Layer, Save, Worker
+from gtm_hit.ops import annotations, tutorial
 from gtm_hit.ops.annotation_rules import InvalidFrame
 from gtm_hit.ops.tutorial import NoTutorial, Step, StepsMissing, available, check, finish, load
 from tests.tutorial_scene import make_tutorial, solved
-from tests.work_scene import make_dataset, make_worker, row
+from tests.work_scene import make_dataset, make_layer, make_worker, row, save
 
 
 @pytest.fixture
@@ -117,5 +121,34 @@ def test_only_a_hidden_ground_truth_is_judged_against(dataset: Dataset, change: 
 
 
 def test_a_truth_without_people_makes_no_tutorial(dataset: Dataset) -> None:
-    Annotation.objects.all().delete()
+    Layer.objects.all().delete()
+    truth = make_layer(dataset, "truth", Layer.Kind.GROUND_TRUTH, hidden=True)
+    for frame in dataset.frames.all():
+        save(truth, frame, [])
     assert not available()
+
+
+def test_an_imported_truth_is_taken_as_it_was_imported(dataset: Dataset) -> None:
+    before = load().exercise
+    layer, frame = Layer.objects.get(), dataset.frames.order_by("number")[0]
+    manager = User.objects.create_user("manager")
+    annotations.save_frame(layer, frame, manager, uuid.uuid4(), 1, [])
+    assert available() and load().exercise == before
+
+
+def test_a_truth_made_by_staff_is_taken_as_it_is(dataset: Dataset) -> None:
+    user = User.objects.create_user("manager")
+    Save.objects.update(user=user)
+    layer, frame = Layer.objects.get(), dataset.frames.order_by("number")[0]
+    annotations.save_frame(layer, frame, user, uuid.uuid4(), 1, [])
+    assert not available()
+
+
+def test_whether_there_is_a_tutorial_is_asked_without_making_it(
+    dataset: Dataset, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def made(*_asked: object) -> None:
+        raise AssertionError("the exercise was made")
+
+    monkeypatch.setattr(tutorial, "make_exercise", made)
+    assert available()

@@ -136,3 +136,25 @@ def test_a_hostile_zip_is_refused(staff: Client, tmp_path: Path) -> None:
     file = SimpleUploadedFile("evil.zip", data)
     page = text(staff.post("/datasets/square/calibration/", {"file": file, "tvec_unit": "m"}))
     assert "leads out of the archive" in page
+
+
+def test_versions_are_listed_and_an_earlier_one_comes_back(staff: Client, tmp_path: Path) -> None:
+    staff.post(f"/datasets/square/calibration/{compared(staff, tmp_path).pk}/confirm/")
+    page = text(staff.get("/datasets/square/calibration/"))
+    assert "new.json" in page and page.count("calibration/versions/") == 1
+    response = staff.post("/datasets/square/calibration/versions/1/compare/")
+    job = Job.objects.latest("pk")
+    assert response["Location"] == f"/jobs/{job.pk}/" and middle() == 167
+    jobs.run(job.pk, OPERATIONS)
+    staff.post(f"/datasets/square/calibration/{job.pk}/confirm/")
+    assert middle() == 160
+
+
+def test_a_version_that_never_was_is_not_found(staff: Client) -> None:
+    assert staff.post("/datasets/square/calibration/versions/9/compare/").status_code == 404
+    assert not Job.objects.exists()
+
+
+def test_only_staff_go_back_to_a_version(client: Client, dataset: Dataset) -> None:
+    response = client.post("/datasets/square/calibration/versions/1/compare/")
+    assert response["Location"].startswith("/login/") and not Job.objects.exists()

@@ -54,3 +54,9 @@ def test_it_is_for_staff(staff: Client) -> None:
     assert staff.get("/evaluate/").status_code == 200
     assert Client().get("/evaluate/").status_code == 302
     assert send(Client(), "0 1 1\n", "0 1 1\n").status_code == 302
+
+
+def test_a_crowd_that_would_fill_the_memory_is_refused(staff: Client) -> None:
+    many = "".join(f"7 {column} 0\n" for column in range(3000))
+    response = send(staff, many, "7 0 0\n")
+    assert "3000 people are in frame 7; at most 500 are compared" in response.content.decode()

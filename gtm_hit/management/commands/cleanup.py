@@ -12,9 +12,9 @@ from gtm_hit.ops.annotation_import import unfinished
 
 class Command(BaseCommand):
     help = (
-        "Remove the files of exports older than EXPORT_KEEP_DAYS, archives nobody imported for a week, "
-        "unfinished work of killed workers, and pictures that failed imports left. The Celery beat "
-        "does the same every hour. Releases always stay."
+        "Remove the files of exports older than EXPORT_KEEP_DAYS, archives nobody imported and rectangle "
+        "tables nobody used for a week, unfinished work of killed workers, and pictures that failed imports "
+        "left. The Celery beat does the same every hour. Releases always stay."
     )
 
     def handle(self, *args: Any, **options: Any) -> None:

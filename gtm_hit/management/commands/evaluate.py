@@ -10,6 +10,7 @@ from django.core.management.base import BaseCommand, CommandError
 
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.metrics.annotations import MetricsError
+from gtm_hit.metrics.limits import TooManyPeople
 from gtm_hit.metrics.matching import RADIUS
 from gtm_hit.ops.quality.text_files import SCORES, Question, evaluate
 
@@ -41,6 +42,8 @@ class Command(BaseCommand):
         names = ("truth", "found", "step", "radius", "identities", "curve")
         try:
             result = evaluate(Question(**{name: options[name] for name in names}))
+        except TooManyPeople as error:
+            raise CommandError(str(error)) from error
         except MetricsError as error:
             raise CommandError(f"--{error}") from error
         except FormatError as error:

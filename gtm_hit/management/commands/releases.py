@@ -49,6 +49,7 @@ def facts(release: Any) -> dict[str, Any]:
         "number": release.number,
         "title": release.title,
         "layer": release.layer.name,
+        "calibration": release.calibration.number if release.calibration else None,
         "counts": release.counts,
         "manifest_digest": release.manifest_digest,
         "created_at": release.created_at.isoformat(),

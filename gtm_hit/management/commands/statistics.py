@@ -9,7 +9,7 @@ from django.core.management.base import BaseCommand, CommandError
 
 from gtm_hit.formats.files import write_bytes
 from gtm_hit.management.lookups import layer_named
-from gtm_hit.ops.quality.statistics import EVERY, ground_coverage, layer_statistics
+from gtm_hit.ops.quality.statistics import EVERY, ground_coverage, layer_statistics, unmeasurable
 from gtm_hit.ops.quality.statistics_figures import FIGURES
 from gtm_hit.ops.quality.statistics_files import PICTURES, numbers_csv
 from gtm_hit.ops.quality.statistics_numbers import DISTRIBUTIONS, as_numbers
@@ -36,6 +36,8 @@ class Command(BaseCommand):
         if every < 1:
             raise CommandError(f"--every must be 1 or more, not {every}")
         wanted = layer_named(slug, layer)
+        if reason := unmeasurable(wanted.dataset):
+            raise CommandError(reason)
         found, ground = layer_statistics(wanted), ground_coverage(wanted.dataset, every)
         numbers = as_numbers(found, ground)
         self.stdout.write(json.dumps(numbers) if options["json"] else "\n".join(_lines(numbers)))

@@ -13,17 +13,32 @@ from gtm_hit.formats.camera_json import camera_facts
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Dataset, Job
 from gtm_hit.ops import jobs
-from gtm_hit.ops.calibration import replacing
+from gtm_hit.ops.calibration import replacing, versions
 from gtm_hit.ops.calibration.replacing import ReplacementError
 from gtm_hit.ops.jobs_progress import percents
 
 SHARES = {replacing.RECTANGLES: (0, 60), replacing.COMPARING: (60, 100)}
 
 
-def start(dataset: Dataset, cameras: Sequence[Camera], user: User | None = None) -> Job:
-    """The numbers go into the job's row: no file has to outlive the request."""
-    parameters = {"cameras": [camera_facts(camera) for camera in cameras]}
+def start(
+    dataset: Dataset, cameras: Sequence[Camera], user: User | None = None, source: str = "", version: int = 0
+) -> Job:
+    """The numbers go into the job's row: no file has to outlive the request.
+
+    `source`: where they come from, in words; `version`: their number where the dataset had them before.
+    """
+    parameters = {
+        "cameras": [camera_facts(camera) for camera in cameras],
+        "source": source,
+        "version": version or None,
+    }
     return jobs.create_once(Job.Kind.REPLACE_CALIBRATION, dataset, parameters, user)
+
+
+def start_version(dataset: Dataset, number: int, user: User | None = None) -> Job:
+    """Compare with a calibration the dataset had before. Raises UnknownVersion."""
+    found = versions.version(dataset, number)
+    return start(dataset, versions.cameras_in(found), user, found.source, number)
 
 
 def run(mine: jobs.Run) -> dict[str, Any]:
@@ -41,8 +56,14 @@ def confirm(job: Job, user: User | None = None) -> None:
             raise ReplacementError("There is no finished comparison to confirm.")
         if "confirmed_at" in job.result:
             raise ReplacementError("This calibration was put in place before.")
-        replacing.replace_calibration(job.dataset, cameras_of(job), job.result)
-        confirmed = {"confirmed_at": timezone.now().isoformat(), "confirmed_by": str(user or "")}
+        placed = replacing.replace_calibration(
+            job.dataset, cameras_of(job), job.result, job.parameters.get("source", ""), user
+        )
+        confirmed = {
+            "confirmed_at": timezone.now().isoformat(),
+            "confirmed_by": str(user or ""),
+            "calibration": placed.number,
+        }
         job.result = {**job.result, **confirmed}
         job.save(update_fields=["result"])
 

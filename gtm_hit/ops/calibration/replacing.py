@@ -8,14 +8,17 @@ from pathlib import Path
 from typing import Any
 
 from django.conf import settings
+from django.contrib.auth.models import User
 from django.db import transaction
 from django.db.models import Count, Max
 
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import Cylinder
 from gtm_hit.geometry.table import RectangleTable, table_digest
-from gtm_hit.models import Annotation, Dataset, Image, Layer, Save
-from gtm_hit.ops.calibration.comparison import Calibration, Comparison, Moved, Person
+from gtm_hit.models import Annotation, Calibration, Dataset, Image, Layer, Save
+from gtm_hit.ops.calibration import comparison as compared
+from gtm_hit.ops.calibration import versions
+from gtm_hit.ops.calibration.comparison import Comparison, Moved, Person
 from gtm_hit.ops.jobs_progress import Progress
 
 PEOPLE_TOGETHER = 20_000
@@ -46,7 +49,7 @@ def preview(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> 
         progress(COMPARING, min(comparison.people, total), total)
     return {
         "state": state,
-        "table_digest": comparison.after.table.digest,
+        "table_digest": comparison.after.table.digest,  # keeps the table until this is confirmed
         "annotations": comparison.people,
         "cameras": comparison.cameras(),
         "worst": [_worst(moved) for moved in comparison.worst],
@@ -54,8 +57,14 @@ def preview(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> 
     }
 
 
-def replace_calibration(dataset: Dataset, cameras: Sequence[Camera], seen: dict[str, Any]) -> None:
-    """Put the cameras of a preview in place.
+def replace_calibration(
+    dataset: Dataset,
+    cameras: Sequence[Camera],
+    seen: dict[str, Any],
+    source: str = "",
+    user: User | None = None,
+) -> Calibration:
+    """Put the cameras of a preview in place; what was there before stays under its number.
 
     Raises ReplacementError when annotations or calibration are not what they were for the preview `seen`.
     """
@@ -65,12 +74,13 @@ def replace_calibration(dataset: Dataset, cameras: Sequence[Camera], seen: dict[
             raise ReplacementError(
                 "Annotations or calibration have changed since these boxes were compared. Compare again."
             )
+        if dataset.calibration_id is None:
+            versions.put_in_place(dataset, dataset.calibrated_cameras(), versions.NOT_KNOWN)
         for row, camera in zip(dataset.cameras.select_for_update(), cameras, strict=True):
             row.matrix, row.distortion = camera.matrix.tolist(), camera.distortion.tolist()
             row.rvec, row.tvec = camera.rvec.tolist(), camera.tvec.tolist()
             row.save(update_fields=["matrix", "distortion", "rvec", "tvec"])
-        dataset.table_digest = seen["table_digest"]
-        dataset.save(update_fields=["table_digest"])
+        return versions.put_in_place(dataset, cameras, source, user)
 
 
 def state_of(dataset: Dataset) -> list[Any]:
@@ -81,7 +91,7 @@ def state_of(dataset: Dataset) -> list[Any]:
     return [digest, *saves.values(), *people.values()]
 
 
-def _calibration(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> Calibration:
+def _calibration(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> compared.Calibration:
     table = RectangleTable.build(
         Path(settings.TABLES_ROOT),
         cameras,
@@ -90,7 +100,7 @@ def _calibration(dataset: Dataset, cameras: Sequence[Camera], progress: Progress
         dataset.rule,
         lambda done, total: progress(RECTANGLES, done, total),
     )
-    return Calibration(cameras, table, dataset.cylinder, dataset.rule)
+    return compared.Calibration(cameras, table, dataset.cylinder, dataset.rule)
 
 
 def _people(dataset: Dataset, **chosen: Any) -> Iterator[Person]:

@@ -16,6 +16,7 @@ from gtm_hit.formats.problems import FormatError, Problem, ProblemList
 from gtm_hit.geometry.camera import Camera as CalibratedCamera
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Dataset, Frame, Image, Layer, LayerFrame
+from gtm_hit.ops.calibration import versions
 from gtm_hit.ops.images import MOST_PIXELS, Derivatives
 from gtm_hit.ops.importing import rows
 from gtm_hit.ops.importing.annotations import ImportedFrame, compare_boxes, read_annotations
@@ -280,7 +281,6 @@ def _make_table(reading: Reading, progress: Progress, problems: ProblemList) -> 
         dataset.rule,
         partial(progress, "computing rectangles"),
     )
-    dataset.table_digest = table.digest
     blind = [camera.name for camera in cameras if not table.visible(camera.index).any()]
     if len(blind) == len(cameras):
         problems.add("calibrations", "no camera sees any position: grid, origin or --tvec-unit is wrong")
@@ -329,9 +329,6 @@ def _write_dataset(reading: Reading) -> Dataset:
     if reading.existing is None:
         reading.dataset.save(force_insert=True)
         rows.add_cameras(reading.dataset, reading.cameras)
+        versions.put_in_place(reading.dataset, reading.cameras, versions.IMPORTED)
         return reading.dataset
-    dataset = Dataset.objects.select_for_update().get(pk=reading.existing.pk)
-    # A table may have been made anew by a newer version of the rule.
-    dataset.table_digest = reading.dataset.table_digest
-    dataset.save(update_fields=["table_digest"])
-    return dataset
+    return Dataset.objects.select_for_update().get(pk=reading.existing.pk)

@@ -10,6 +10,7 @@ from django.db import transaction
 
 from gtm_hit.geometry.camera import Camera as CalibratedCamera
 from gtm_hit.models import Annotation, Camera, Dataset, Frame, Image, Layer, LayerFrame, Save
+from gtm_hit.ops.calibration.versions import in_place_id
 from gtm_hit.ops.images import Derivatives
 from gtm_hit.ops.importing.annotations import ImportedFrame
 from gtm_hit.ops.importing.insert import insert
@@ -84,6 +85,7 @@ def add_annotations(layer: Layer, imported: Iterable[ImportedFrame]) -> None:
 def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
     numbers = [each.number for each in imported]
     people = [each.rows() for each in imported]
+    calibration = in_place_id(layer.dataset_id)
     found = Frame.objects.filter(dataset=layer.dataset, number__in=numbers)
     frames = {frame.number: frame for frame in found}
     heads = LayerFrame.objects.bulk_create(
@@ -102,6 +104,7 @@ def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
                 annotations=rows,
                 done=True,
                 nobody=not rows,
+                calibration_id=calibration,
             )
             for head, rows in zip(heads, people, strict=True)
         ],

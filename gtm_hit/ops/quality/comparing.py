@@ -12,8 +12,9 @@ from django.utils.translation import gettext as _
 
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.metrics import detection
-from gtm_hit.metrics.annotations import Annotations, Ids
+from gtm_hit.metrics.annotations import Annotations, Ids, MetricsError
 from gtm_hit.metrics.detection import DetectionScore, FrameScores
+from gtm_hit.metrics.limits import MOST_PAIRS, check_size
 from gtm_hit.metrics.matching import RADIUS, match_places
 from gtm_hit.metrics.tracking import Switch, TrackingScore
 from gtm_hit.models import Layer
@@ -124,6 +125,10 @@ def _compare(asked: Question) -> Comparison:
     rows = read_layers(layers.values(), (int(numbers[0]), int(numbers[-1])))
     truth, found = rows[asked.truth.layer].within(numbers), rows[asked.found.layer].within(numbers)
     truth_xy, found_xy = truth.annotations(asked.grid), found.annotations(asked.grid)
+    try:
+        check_size(truth_xy, found_xy, MOST_PAIRS if asked.most else None)
+    except MetricsError as error:
+        raise QualityError(str(error)) from error
     frames = detection.evaluate_frames(truth_xy, found_xy, asked.radius)
     result = tracking.evaluate(truth_xy, found_xy, asked.radius)
     places = np.searchsorted(frames.numbers, [switch.frame for switch in result.switches])

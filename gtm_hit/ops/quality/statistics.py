@@ -7,6 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+from django.utils.translation import gettext as _
 
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.metrics import statistics
@@ -21,6 +22,8 @@ from gtm_hit.ops.rectangles import annotation_rectangles
 
 EVERY = 8  # the paper counts every eighth position of the grid along both axes
 ROWS_AT_ONCE = 50_000
+STEPS = (1e-4, 1e4)  # metres; outside, areas and speeds leave the range of numbers
+RATES = (1e-6, 1e6)  # frame numbers per second
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +40,22 @@ class LayerStatistics:
     heights: Floats  # (P,) metres, one per person: the mean of what was annotated, else the cylinder's
     own_heights: int  # people with a height of their own
     speeds: Floats  # metres per second
+
+
+def unmeasurable(dataset: Dataset) -> str:
+    """Why nothing can be measured in the dataset; empty when it can."""
+    within = {
+        _("The step of the grid"): (dataset.step, STEPS, "m"),
+        _("The frame rate"): (dataset.frame_rate, RATES, "/s"),
+    }
+    for name, (value, (least, most), unit) in within.items():
+        if not least <= value <= most:
+            return _("%(name)s is %(value)g %(unit)s: nothing can be measured with that.") % {
+                "name": name,
+                "value": value,
+                "unit": unit,
+            }
+    return ""
 
 
 def layer_statistics(layer: Layer) -> LayerStatistics:

@@ -15,6 +15,7 @@ from gtm_hit.formats import frame_column_row
 from gtm_hit.formats.problems import FormatError, Problem
 from gtm_hit.metrics import detection
 from gtm_hit.metrics.annotations import Annotations, MetricsError
+from gtm_hit.metrics.limits import MOST_PAIRS, check_size
 from gtm_hit.metrics.matching import RADIUS
 
 SCORES = ("moda", "modp", "precision", "recall", "radius")
@@ -32,19 +33,22 @@ class Question:
     radius: float = RADIUS
     identities: bool = False
     curve: bool = False
+    most_pairs: int | None = None  # of people, over all frames; None: as many as there are
 
 
 def evaluate(asked: Question) -> dict[str, Any]:
     """JSON's types only; scores as fractions, metres; what is not defined is null.
 
     A frame that only one of the files has counts as well: its people are all missed, or all extra.
-    Raises MetricsError for a step or radius that is none, FormatError with everything wrong in either file.
+    Raises MetricsError for a step or radius that is none and for crowds too large, FormatError with
+    everything wrong in either file.
     """
     for name in ("step", "radius"):
         value = getattr(asked, name)
         if not (math.isfinite(value) and value > 0):
             raise MetricsError(f"{name} must be a positive number of metres, not {value}")
     truth, found = _read_both(asked)
+    check_size(truth, found, asked.most_pairs)
     score = detection.evaluate(truth, found, asked.radius)
     result: dict[str, Any] = {name: getattr(score, name) for name in (*SCORES, *COUNTS)}
     if asked.identities:
@@ -64,7 +68,7 @@ def evaluate_uploads(truth: UploadedFile, found: UploadedFile, **asked: Any) -> 
         for path, file in zip(paths, (truth, found), strict=True):
             path.write_bytes(file.read())
         try:
-            return evaluate(Question(*paths, **asked))
+            return evaluate(Question(*paths, **asked, most_pairs=MOST_PAIRS))
         except FormatError as error:
             raise error.relative_to(folder) from error
 

@@ -142,3 +142,14 @@ def test_a_layer_never_saved_has_a_state(db: None) -> None:
     layer = make_layer(make_dataset(frames=1))
     assert (state_of(layer).frames, state_of(layer).revisions) == (0, 0)
     assert not LayerFrame.objects.exists()
+
+
+def test_layers_with_a_crowd_that_would_fill_the_memory_are_refused(layers: tuple[Layer, Layer]) -> None:
+    truth, found = layers
+    frame = LayerFrame.objects.filter(layer=truth).order_by("frame__number")[0].frame
+    Annotation.objects.bulk_create(
+        Annotation(layer=truth, frame=frame, person=person, position=person % 100)
+        for person in range(1000, 1501)
+    )
+    with pytest.raises(QualityError, match="at most 500 are compared"):
+        compare(truth, found)
