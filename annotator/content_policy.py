@@ -20,7 +20,8 @@ POLICY = "; ".join(
         "frame-ancestors 'none'",
     ]
 )
-FIGURE = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'"  # a drawing brings its style along
+# A drawing brings its style along.
+FIGURE = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'"
 
 
 class ContentPolicyMiddleware:

@@ -43,7 +43,7 @@ class BodyTooLarge(Error):
 
 
 class BoundedParser(HTTPRequestParser):
-    """Looks at address and length before a body is taken in: only archives are large, and strangers send none."""
+    """Looks at address and length before a body is taken in: only archives are large, strangers send none."""
 
     def received(self, data: bytes) -> int:
         consumed = int(super().received(data))

@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
+from django.urls import get_script_prefix
+
 from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, LayerFrame
 from gtm_hit.ops.neighbours import Neighbours, neighbours
 
@@ -66,7 +68,7 @@ def head_part(head: LayerFrame) -> dict[str, Any]:
 
 
 def image_url(digest: str) -> str:
-    return f"/api/v1/images/{digest}.jpg"
+    return f"{get_script_prefix()}api/v1/images/{digest}.jpg"
 
 
 def assignment_part(assignment: Assignment | None) -> dict[str, Any] | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Any
 
+from django.urls import get_script_prefix
 from drf_spectacular.utils import OpenApiExample, extend_schema_field, extend_schema_serializer
 from rest_framework import serializers
 
@@ -198,7 +199,7 @@ class JobShape(serializers.ModelSerializer[Job]):
 
     @extend_schema_field(serializers.CharField(allow_null=True, help_text="address of an export's zip"))
     def get_download(self, job: Job) -> str | None:
-        return f"/api/v1/jobs/{job.pk}/download/" if exporting.made_files(job) else None
+        return f"{get_script_prefix()}api/v1/jobs/{job.pk}/download/" if exporting.made_files(job) else None
 
     @extend_schema_field(
         serializers.DateTimeField(allow_null=True, help_text="when an export's files will be removed")

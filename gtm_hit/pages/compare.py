@@ -12,7 +12,7 @@ from django import forms
 from django.core.paginator import Paginator
 from django.http import Http404, HttpRequest, HttpResponse, JsonResponse
 from django.shortcuts import render
-from django.urls import path
+from django.urls import get_script_prefix, path
 from django.utils.safestring import mark_safe
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_lazy
@@ -177,7 +177,7 @@ def compare_view(request: HttpRequest, slug: str) -> HttpResponse:
         "dataset": asked.context["dataset"],
         "query": asked.query,
         "viewer": {
-            "scene": f"/api/v1/layers/{truth.pk}/",
+            "scene": f"{get_script_prefix()}api/v1/layers/{truth.pk}/",
             "truth": truth.name,
             "found": found.name,
             "frames": lines,
