@@ -45,6 +45,8 @@ class BodyTooLarge(Error):
 class BoundedParser(HTTPRequestParser):
     """Looks at address and length before a body is taken in: only archives are large, strangers send none."""
 
+    error: Error | None
+
     def received(self, data: bytes) -> int:
         consumed = int(super().received(data))
         if self.headers_finished and self.error is None and (refusal := self.refusal()):

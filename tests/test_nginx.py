@@ -1,4 +1,4 @@
-"""The shipped nginx.conf, by Debian's nginx, before a real gunicorn; only addresses and folders are put in."""
+"""The shipped nginx.conf, by Debian's nginx, before a real gunicorn; only addresses are put in."""
 
 from __future__ import annotations
 
@@ -132,7 +132,8 @@ def first_line(site: Site, path: str, megabytes: int, sent: bytes = b"x") -> str
     with socket.create_connection(("127.0.0.1", site.port), timeout=10) as connection:
         connection.sendall(
             f"POST {path} HTTP/1.1\r\nHost: gtm.example.org\r\nX-Forwarded-Proto: https\r\n"
-            f"Content-Type: multipart/form-data; boundary=b\r\nContent-Length: {megabytes}000000\r\n\r\n".encode()
+            "Content-Type: multipart/form-data; boundary=b\r\n"
+            f"Content-Length: {megabytes}000000\r\n\r\n".encode()
             + sent
         )
         return connection.recv(4096).decode("latin-1").split("\r\n")[0]

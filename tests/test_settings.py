@@ -162,7 +162,10 @@ def test_djangos_own_checks_for_production_find_nothing(tmp_path: Path) -> None:
 
 
 def test_acknowledged_saves_are_written_through_to_the_disk(tmp_path: Path) -> None:
-    code = "from django.db import connection as c; k=c.cursor(); k.execute('PRAGMA synchronous'); print(k.fetchone())"
+    code = (
+        "from django.db import connection; cursor = connection.cursor();"
+        " cursor.execute('PRAGMA synchronous'); print(cursor.fetchone())"
+    )
     result = manage("shell", "-v0", "-c", code, SECRET_KEY="s" * 50, DATA_DIR=str(tmp_path / "data"))
     assert result.stdout.strip() == "(2,)"  # FULL
 

@@ -16,4 +16,4 @@ def failed(request: HttpRequest) -> HttpResponse:
     if not disk_full(sys.exc_info()[1]):
         return server_error(request)
     # Without the request: the bar of the page asks the database who is signed in.
-    return render(None, "507.html", status=507)  # type: ignore[arg-type]
+    return render(None, "507.html", status=507)
