@@ -97,7 +97,7 @@ def processes(folder: Path, **variables: str) -> Iterator[Site]:
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     if not Path(NGINX).exists():
-        pytest.skip("nginx is not installed: apt install nginx-light")
+        pytest.skip("nginx is not installed: apt install nginx")
     with processes(tmp_path_factory.mktemp("nginx"), SECURE="true", SCRIPT_NAME="/gtm") as started:
         yield started
 
@@ -166,3 +166,10 @@ def test_guessing_passwords_is_slowed_down(site: Site) -> None:
     answers = [site.ask("/gtm/login/", X_Forwarded_For="10.9.8.7").status for _ in range(120)]
     assert answers.count(429) > 20
     assert site.ask("/gtm/login/", X_Forwarded_For="10.9.8.6", X_Forwarded_Proto="https").status == 200
+
+
+def test_a_stranger_who_sends_all_the_same_reads_why_not(site: Site) -> None:
+    connection = http.client.HTTPConnection("127.0.0.1", site.port, timeout=30)
+    headers = {"Host": "gtm.example.org", "X-Forwarded-Proto": "https", "Content-Type": "application/zip"}
+    connection.request("POST", "/gtm/api/v1/uploads/", body=b"x" * 50_000_000, headers=headers)
+    assert connection.getresponse().status == 401
