@@ -3,7 +3,7 @@ ENV PYTHONUNBUFFERED=1 PYTHONDONTWRITEBYTECODE=1
 WORKDIR /srv/gtm
 COPY requirements.txt .
 RUN pip install --no-cache-dir -r requirements.txt && useradd --create-home --uid 10001 gtm \
-    && mkdir /data && chown gtm /data
+    && mkdir -m 700 /data && chown gtm /data
 COPY manage.py ./
 COPY annotator annotator
 COPY gtm_hit gtm_hit
@@ -13,4 +13,4 @@ COPY fixtures fixtures
 USER gtm
 ENV DATA_DIR=/data
 EXPOSE 8000
-CMD ["gunicorn", "annotator.wsgi", "--bind", "0.0.0.0:8000", "--worker-class", "gthread", "--workers", "2", "--threads", "8"]
+CMD ["gunicorn", "annotator.wsgi", "--bind", "0.0.0.0:8000", "--worker-class", "gthread", "--workers", "2", "--threads", "8", "--keep-alive", "75", "--no-control-socket"]

@@ -17,8 +17,8 @@ help: ## list what make can do
 run: $(ENVIRONMENT) ## start everything on this machine: demo scene, web server, worker (PORT=8123 for another port)
 	@exec $(BIN)/python -m annotator.local --host $(HOST) --port $(PORT)
 
-test: $(DEV_ENVIRONMENT) ## run all tests; installs the Debian packages they need (chromium, postgresql, redis-server)
-	@scripts/install-debian-packages chromium postgresql redis-server fonts-dejavu-core
+test: $(DEV_ENVIRONMENT) ## run all tests; installs the Debian packages they need (chromium, postgresql, redis-server, nginx)
+	@scripts/install-debian-packages chromium postgresql redis-server nginx fonts-dejavu-core
 	$(BIN)/pytest -n 2 --dist loadgroup
 
 test-fast: $(DEV_ENVIRONMENT) ## the tests that need neither a browser nor services

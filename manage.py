@@ -6,7 +6,11 @@ import secrets
 import sys
 from pathlib import Path
 
+from annotator.private_files import keep_private, private_folder
+
 PURE = {"evaluate"}  # compares files: needs neither a key nor a data folder
+# Their files are for others, wherever they are told to put them.
+FOR_OTHERS = {"exportlayer", "exportpom", "statistics", "comparelayers"}
 
 
 def main() -> None:
@@ -19,7 +23,8 @@ def main() -> None:
     try:
         if sys.argv[1:2] and sys.argv[1] not in {*PURE, "help", "--help", "--version"}:
             # SQLite makes its file, but not the folder around it.
-            settings.DATA_DIR.mkdir(parents=True, exist_ok=True)
+            (private_folder if sys.argv[1] in FOR_OTHERS else keep_private)(settings.DATA_DIR)
+            Path(settings.FILE_UPLOAD_TEMP_DIR).mkdir(exist_ok=True)
     except ImproperlyConfigured as error:
         sys.exit(str(error))
     except OSError as error:

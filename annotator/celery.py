@@ -1,12 +1,15 @@
 from __future__ import annotations
 
 import os
+from typing import Any
 
 from celery import Celery
-from celery.signals import worker_ready
+from celery.signals import worker_init, worker_ready
+from django.conf import settings
 from kombu.transport import TRANSPORT_ALIASES
 
 from annotator import clock
+from annotator.private_files import keep_private
 
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "annotator.settings")
 TRANSPORT_ALIASES["filesystem"] = "annotator.folder_broker:Transport"
@@ -40,3 +43,8 @@ app.conf.beat_schedule = {
         "options": {"expires": 59},
     },
 }
+
+
+@worker_init.connect
+def close_the_data_folder(**_given: Any) -> None:
+    keep_private(settings.DATA_DIR)

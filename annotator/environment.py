@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ipaddress
 import os
+import re
 from urllib.parse import unquote, urlsplit
 
 from django.core.exceptions import ImproperlyConfigured
@@ -66,11 +67,23 @@ def networks(name: str, default: str) -> list[ipaddress.IPv4Network | ipaddress.
         raise ImproperlyConfigured(f"{name} must be a list of addresses and networks: {error}") from None
 
 
-def database(name: str, default: str) -> dict[str, object]:
-    """Django's database entry for `sqlite:///path` or `postgres://user:password@host:port/name`."""
+def path_prefix(name: str) -> str:
+    """`/gtm` or nothing: what stands before every path."""
+    value = os.environ.get(name, "").rstrip("/")
+    if value and not re.fullmatch(r"(/[A-Za-z0-9._~-]+)+", value):
+        raise ImproperlyConfigured(f"{name} must look like /gtm; got {value!r}")
+    return value
+
+
+def database(name: str, default: str, password: str = "") -> dict[str, object]:
+    """Django's database entry for `sqlite:///path` or `postgres://user:password@host:port/name`.
+
+    `password` is for an address that has none; it is taken as it is.
+    """
     url = text(name, default)
     parts = urlsplit(url)
     if parts.scheme == "sqlite":
+        # FULL: what was acknowledged outlives a power cut; the browser forgets it then.
         # IMMEDIATE: a transaction that will write takes the lock at its start and waits for it,
         # instead of failing half-way with "database is locked".
         return {
@@ -79,10 +92,21 @@ def database(name: str, default: str) -> dict[str, object]:
             "OPTIONS": {
                 "timeout": 20,
                 "transaction_mode": "IMMEDIATE",
-                "init_command": "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL;",
+                "init_command": "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;",
             },
         }
     if parts.scheme in {"postgres", "postgresql"}:
+        # A password with one of these ends where it should not, and its rest becomes host or database.
+        if (
+            parts.netloc.count("@") > 1
+            or set(parts.path.lstrip("/")) & set("/@:")
+            or parts.query
+            or parts.fragment
+        ):
+            raise ImproperlyConfigured(
+                f"{name}: in a password write @ as %40, / as %2F, : as %3A, ? as %3F, # as %23;"
+                " or leave it out and set DATABASE_PASSWORD"
+            )
         try:
             port = parts.port
         except ValueError:
@@ -91,7 +115,7 @@ def database(name: str, default: str) -> dict[str, object]:
             "ENGINE": "django.db.backends.postgresql",
             "NAME": unquote(parts.path.lstrip("/")),
             "USER": unquote(parts.username or ""),
-            "PASSWORD": unquote(parts.password or ""),
+            "PASSWORD": unquote(parts.password or "") or password,
             "HOST": parts.hostname or "",
             "PORT": str(port or ""),
             "CONN_MAX_AGE": 60,

@@ -7,22 +7,23 @@ scene below DATA_DIR; later starts find them there. Ctrl-C stops everything it s
 from __future__ import annotations
 
 import argparse
+import errno
 import hashlib
 import os
 import secrets
 import signal
 import socket
-import subprocess
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
+from annotator.private_files import keep_private
+from annotator.processes import AlreadyRunning, Claim, Part, claim, keep_alive, run_once, running
+
 STAFF_NAME = "staff"
-GRACE_SECONDS = 10
+ROOT = Path(__file__).resolve().parent.parent
 
 
 def main() -> int:
@@ -30,37 +31,55 @@ def main() -> int:
     parser.add_argument("--host", default="127.0.0.1")
     parser.add_argument("--port", type=int, default=8000)
     options = parser.parse_args()
-    if problem := port_problem(options.host, options.port):
-        print(problem, file=sys.stderr)
-        return 1
     os.environ.setdefault("DJANGO_SETTINGS_MODULE", "annotator.settings")
-    data = Path(os.environ.setdefault("DATA_DIR", str(Path(__file__).resolve().parent.parent / "var")))
-    for folder in (data, data / "broker" / "queue", data / "broker" / "control"):
-        folder.mkdir(parents=True, exist_ok=True)
-    os.environ.setdefault("SECRET_KEY", kept_secret(data / "secret-key", 64))
-    prepare()
-    password = staff_password(data / "staff-password")
+    data = Path(os.environ.setdefault("DATA_DIR", str(ROOT / "var")))
+    keep_private(data)
     # A closed terminal or a service manager ends it as Ctrl-C does; a shell's background job starts
     # with SIGINT ignored.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, interrupt)
     try:
-        with running(web_command(options.host, options.port), worker_command(data)) as processes:
-            if not wait_until_answering(options.host, options.port, processes[0]):
-                return 1
-            welcome(options.host, options.port, password)
-            return wait(processes)
+        return start(options.host, options.port, data, claim(data))
+    except AlreadyRunning as other:
+        print(f"Ground Truth Marker runs on {data} already (process {other.pid}).", file=sys.stderr)
+        return 1
     except KeyboardInterrupt:
         return 0
 
 
+def start(host: str, port: int, data: Path, claimed: Claim) -> int:
+    if problem := port_problem(host, port):
+        print(problem, file=sys.stderr)
+        return 1
+    for folder in (data / "broker" / "queue", data / "broker" / "control"):
+        folder.mkdir(parents=True, exist_ok=True)
+    os.environ.setdefault("SECRET_KEY", kept_secret(data / "secret-key", 64))
+    if not prepare(claimed):
+        return 1
+    password = staff_password(data / "staff-password")
+    web = Part("web server", web_command(host, port))
+    worker = Part("worker", worker_command(data))
+    with running(claimed, web, worker):
+        if not wait_until_answering(host, port, web):
+            return 1
+        welcome(host, port, password)
+        return keep_alive(claimed, [web, worker])
+
+
 def port_problem(host: str, port: int) -> str | None:
-    with socket.socket() as probe:
+    try:
+        family, _kind, _protocol, _name, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    except OSError as error:
+        return f"{host} is no address of this machine ({error.strerror})."
+    with socket.socket(family) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
-            probe.bind((host, port))
+            probe.bind(address)
         except OSError as error:
-            return f"Port {port} on {host} cannot be used ({error.strerror}). Try: make run PORT={port + 1}"
+            hint = (
+                f" Try: make run PORT={port + 1}" if error.errno in {errno.EADDRINUSE, errno.EACCES} else ""
+            )
+            return f"Port {port} on {host} cannot be used ({error.strerror}).{hint}"
     return None
 
 
@@ -72,7 +91,7 @@ def kept_secret(path: Path, length: int) -> str:
     return path.read_text().strip()
 
 
-def prepare() -> None:
+def prepare(claimed: Claim) -> bool:
     import django
     from django.conf import settings
     from django.core.management import call_command
@@ -83,9 +102,12 @@ def prepare() -> None:
     print("Preparing database and static files …", flush=True)
     call_command("migrate", verbosity=0)
     collect_static()
-    if not Dataset.objects.filter(slug=settings.TUTORIAL_DATASET).exists():
-        print("Making the demo scene (once) …", flush=True)
-        call_command("makedemo", slug=settings.TUTORIAL_DATASET)
+    if Dataset.objects.filter(slug=settings.TUTORIAL_DATASET).exists():
+        return True
+    print("Making the demo scene (once) …", flush=True)
+    # A process of its own: it starts others, and all of them can be ended at once.
+    command = [sys.executable, str(ROOT / "manage.py"), "makedemo", "--slug", settings.TUTORIAL_DATASET]
+    return run_once(claimed, command) == 0
 
 
 def collect_static() -> None:
@@ -121,11 +143,7 @@ def staff_password(path: Path) -> str | None:
 
 def web_command(host: str, port: int) -> list[str]:
     """One process: SQLite has one writer anyway, and threads wait for the network side by side."""
-    return [
-        *(sys.executable, "-m", "gunicorn", "annotator.wsgi"),
-        *("--bind", f"{host}:{port}", "--worker-class", "gthread", "--threads", "8"),
-        *("--log-level", "warning", "--graceful-timeout", "5"),
-    ]
+    return [sys.executable, "-m", "annotator.web_server", "--host", host, "--port", str(port)]
 
 
 def worker_command(data: Path) -> list[str]:
@@ -138,38 +156,9 @@ def worker_command(data: Path) -> list[str]:
     ]
 
 
-@contextmanager
-def running(*commands: list[str]) -> Iterator[list[subprocess.Popen[bytes]]]:
-    """Run the commands, each in a session of its own, and stop all they started at the end."""
-    processes: list[subprocess.Popen[bytes]] = []
-    try:
-        for command in commands:
-            processes.append(subprocess.Popen(command, start_new_session=True))
-        yield processes
-    finally:
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, signal.SIG_IGN)  # a second Ctrl-C must not leave a process behind
-        print("\nStopping …", flush=True)
-        for process in processes:
-            send(process, signal.SIGTERM)
-        deadline = time.monotonic() + GRACE_SECONDS
-        for process in processes:
-            with suppress(subprocess.TimeoutExpired):
-                process.wait(max(0.1, deadline - time.monotonic()))
-            # The leader may be gone while a child of it still runs.
-            send(process, signal.SIGKILL)
-
-
-def send(process: subprocess.Popen[bytes], number: signal.Signals) -> None:
-    try:
-        os.killpg(process.pid, number)
-    except ProcessLookupError:
-        return
-
-
-def wait_until_answering(host: str, port: int, web: subprocess.Popen[bytes], seconds: float = 30) -> bool:
+def wait_until_answering(host: str, port: int, web: Part, seconds: float = 30) -> bool:
     deadline = time.monotonic() + seconds
-    while time.monotonic() < deadline and web.poll() is None:
+    while time.monotonic() < deadline and web.alive():
         try:
             with socket.create_connection((host, port), timeout=1):
                 return True
@@ -183,23 +172,19 @@ def welcome(host: str, port: int, password: str | None) -> None:
     from django.conf import settings
     from django.core.management import call_command
 
-    base = f"http://{'127.0.0.1' if host == '0.0.0.0' else host}:{port}"
+    server = f"http://{shown_host(host)}:{port}"
     shown = password or "(as you chose it)"
-    print(f"\nGround Truth Marker runs at  {base}/\n")
+    print(f"\nGround Truth Marker runs at  {server}{settings.SCRIPT_NAME}/\n")
     print(f"  staff login   name {STAFF_NAME}   password {shown}")
     print("  annotate at once:", flush=True)
-    call_command("makelink", settings.TUTORIAL_DATASET, worker="local-annotator", base_url=base)
+    call_command("makelink", settings.TUTORIAL_DATASET, worker="local-annotator", base_url=server)
     print("\nCtrl-C stops everything; data stay in", settings.DATA_DIR, "\n", flush=True)
 
 
-def wait(processes: list[subprocess.Popen[bytes]]) -> int:
-    """Wait for an interruption; a server that dies by itself ends the wait too."""
-    while True:
-        for process in processes:
-            if process.poll() is not None:
-                print(f"{process.args!r} ended with {process.returncode}; stopping.", file=sys.stderr)
-                return 1
-        time.sleep(0.2)
+def shown_host(host: str) -> str:
+    """As it stands in addresses; what listens everywhere is reached here too."""
+    host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
+    return f"[{host}]" if ":" in host else host
 
 
 def interrupt(_number: int, _frame: FrameType | None) -> NoReturn:

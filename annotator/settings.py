@@ -32,7 +32,13 @@ INSTALLED_APPS = [
     "gtm_hit",
 ]
 
+# The path below which a proxy shows this server, for example /gtm; the proxy passes it on.
+SCRIPT_NAME = environment.path_prefix("SCRIPT_NAME")
+FORCE_SCRIPT_NAME = SCRIPT_NAME or None
+SESSION_COOKIE_PATH = CSRF_COOKIE_PATH = LANGUAGE_COOKIE_PATH = SCRIPT_NAME or "/"
+
 MIDDLEWARE = [
+    "annotator.content_policy.ContentPolicyMiddleware",
     "django.middleware.security.SecurityMiddleware",
     "whitenoise.middleware.WhiteNoiseMiddleware",
     "django.contrib.sessions.middleware.SessionMiddleware",
@@ -63,7 +69,11 @@ TEMPLATES = [
     },
 ]
 
-DATABASES = {"default": environment.database("DATABASE_URL", f"sqlite:///{DATA_DIR}/gtm.sqlite3")}
+DATABASES = {
+    "default": environment.database(
+        "DATABASE_URL", f"sqlite:///{DATA_DIR}/gtm.sqlite3", environment.text("DATABASE_PASSWORD", "")
+    )
+}
 DEFAULT_AUTO_FIELD = "django.db.models.BigAutoField"
 
 AUTH_PASSWORD_VALIDATORS = [
@@ -80,7 +90,7 @@ USE_I18N = True
 USE_TZ = True
 LOCALE_PATHS = [BASE_DIR / "locale"]
 
-STATIC_URL = "/static/"
+STATIC_URL = f"{SCRIPT_NAME}/static/"
 STATICFILES_DIRS = [BASE_DIR / "static"]
 STATIC_ROOT = DATA_DIR / "static"
 WHITENOISE_KEEP_ONLY_HASHED_FILES = True
@@ -92,6 +102,10 @@ INCOMING_ROOT = DATA_DIR / "incoming"  # folders and videos put on the server fo
 # Days until the files of an export are removed; 0: never. Releases are never removed.
 EXPORT_KEEP_DAYS = environment.integer("EXPORT_KEEP_DAYS", 30, minimum=0, maximum=36_500)
 UPLOADS_ROOT = DATA_DIR / "uploads"  # archives that came through the browser
+# Where they arrive: on the same disk, so that keeping one needs no second copy.
+FILE_UPLOAD_TEMP_DIR = str(DATA_DIR / "arriving")
+FILE_UPLOAD_PERMISSIONS = 0o600
+FILE_UPLOAD_DIRECTORY_PERMISSIONS = 0o700
 MAX_UPLOAD_MB = environment.integer("MAX_UPLOAD_MB", 2048, minimum=1, maximum=1_000_000)
 STORAGES = {
     "default": {"BACKEND": "django.core.files.storage.FileSystemStorage"},
@@ -141,6 +155,9 @@ SPECTACULAR_SETTINGS = {
 SECURE = environment.boolean("SECURE", False)
 SECURE_SSL_REDIRECT = SESSION_COOKIE_SECURE = CSRF_COOKIE_SECURE = SECURE
 SECURE_PROXY_SSL_HEADER = ("HTTP_X_FORWARDED_PROTO", "https") if SECURE else None
+SECURE_HSTS_SECONDS = 365 * 24 * 3600 if SECURE else 0
+# Names below and above ours belong to others; browsers' lists are for whoever owns the whole domain.
+SILENCED_SYSTEM_CHECKS = ["security.W005", "security.W021"]
 SECURE_REFERRER_POLICY = "same-origin"  # assignment tokens are in addresses
 X_FRAME_OPTIONS = "DENY"
 DATA_UPLOAD_MAX_MEMORY_SIZE = 5 * 1024 * 1024
@@ -159,7 +176,13 @@ LOG_LEVEL = environment.one_of("LOG_LEVEL", "INFO", ("DEBUG", "INFO", "WARNING",
 LOGGING = {
     "version": 1,
     "disable_existing_loggers": False,
-    "formatters": {"plain": {"format": "{asctime} {levelname} {name}: {message}", "style": "{"}},
+    "formatters": {
+        "plain": {
+            "()": "annotator.masked_log.MaskingFormatter",
+            "format": "{asctime} {levelname} {name}: {message}",
+            "style": "{",
+        }
+    },
     "handlers": {"console": {"class": "logging.StreamHandler", "formatter": "plain"}},
     "root": {
         "handlers": ["console"],

@@ -16,3 +16,5 @@ urlpatterns = [
     path("api/v1/", include("gtm_hit.api.urls")),
     path("", include("gtm_hit.pages.urls")),
 ]
+
+handler500 = "gtm_hit.pages.failure.failed"

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import tempfile
+from pathlib import Path
 
 os.environ.setdefault("SECRET_KEY", "tests-" + "k" * 40)
 os.environ.setdefault("DATA_DIR", tempfile.mkdtemp(prefix="gtm-tests-"))
 
 from annotator.settings import *  # noqa: F403
 
+Path(FILE_UPLOAD_TEMP_DIR).mkdir(exist_ok=True)  # noqa: F405
 PASSWORD_HASHERS = ["django.contrib.auth.hashers.MD5PasswordHasher"]
 # Names without hashes: no test has to collect the static files first.
 STORAGES = {

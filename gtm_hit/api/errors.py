@@ -13,6 +13,7 @@ from django.core.signals import got_request_exception
 from django.db import OperationalError
 from django.http import Http404
 from django.utils.translation import gettext as _
+from django.utils.translation import gettext_lazy
 from rest_framework import exceptions, status
 from rest_framework.response import Response
 from rest_framework.views import set_rollback
@@ -21,10 +22,12 @@ from gtm_hit.formats.problems import MOST_PROBLEMS
 from gtm_hit.ops import assignments, tutorial
 from gtm_hit.ops.annotation_rules import InvalidFrame
 from gtm_hit.ops.annotations import SaveIdUsed, StaleSave, UnknownRevision
+from gtm_hit.ops.full_disk import disk_full
 
 log = logging.getLogger(__name__)
 MOST_QUOTED = 500
 
+FULL = gettext_lazy("The server's disk is full; nothing was written. Whoever runs the server must make room.")
 CODES = {
     status.HTTP_400_BAD_REQUEST: "invalid",
     status.HTTP_401_UNAUTHORIZED: "not_signed_in",
@@ -108,6 +111,9 @@ def flattened(detail: Any, place: str = "") -> Iterator[dict[str, str]]:
 
 
 def unexpected_answer(error: Exception, context: dict[str, Any]) -> Response:
+    if disk_full(error):
+        log.error("the disk is full: %s", error)
+        return answer(507, "disk_full", str(FULL))
     if isinstance(error, OperationalError):
         log.warning("the database did not answer in time: %s", error)
         response = answer(503, "busy", _("The server is busy; nothing was written. Try again."))

@@ -7,6 +7,7 @@ from typing import Any
 
 from django.db.models import QuerySet
 from django.http import FileResponse, Http404
+from django.urls import get_script_prefix
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_lazy
 from drf_spectacular.types import OpenApiTypes
@@ -81,7 +82,7 @@ class JobShape(serializers.ModelSerializer[Job]):
 
     @extend_schema_field(serializers.CharField(allow_null=True, help_text="address of an export's zip"))
     def get_download(self, job: Job) -> str | None:
-        return f"/api/v1/jobs/{job.pk}/download/" if exporting.made_files(job) else None
+        return f"{get_script_prefix()}api/v1/jobs/{job.pk}/download/" if exporting.made_files(job) else None
 
     @extend_schema_field(
         serializers.DateTimeField(allow_null=True, help_text="when an export's files will be removed")

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
+from django.urls import get_script_prefix
 from rest_framework import serializers
 
 from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, LayerFrame
@@ -106,7 +107,7 @@ def head_part(head: LayerFrame) -> dict[str, Any]:
 
 
 def image_url(digest: str) -> str:
-    return f"/api/v1/images/{digest}.jpg"
+    return f"{get_script_prefix()}api/v1/images/{digest}.jpg"
 
 
 def assignment_part(assignment: Assignment | None) -> dict[str, Any] | None:

@@ -3,7 +3,8 @@ from __future__ import annotations
 from typing import Any
 
 from django.urls import URLPattern, URLResolver, include, path, re_path
-from drf_spectacular.views import SpectacularAPIView, SpectacularSwaggerView
+from django.views.decorators.gzip import gzip_page
+from drf_spectacular.views import SpectacularAPIView
 
 # Importing it tells drf-spectacular about the tokens.
 from gtm_hit.api import (
@@ -21,6 +22,7 @@ from gtm_hit.api import (
     work,
 )
 from gtm_hit.api.authentication import BearerAuthentication, StaffMay, StaffSession
+from gtm_hit.api.docs import DocsView
 from gtm_hit.api.images import ImageView
 from gtm_hit.api.missing import MissingView
 from gtm_hit.api.places import IN_LAYER, layer_start_place
@@ -30,30 +32,31 @@ staff: dict[str, Any] = {
     "authentication_classes": [BearerAuthentication, StaffSession],
     "permission_classes": [StaffMay],
 }
+# Scenes and frames are long and hold nothing secret that a stranger could guess by their length.
 assignment = [
-    path("scene/", frames.SceneView.as_view()),
-    path("frames/", frames.AssignmentFrames.as_view()),
+    path("scene/", gzip_page(frames.SceneView.as_view())),
+    path("frames/", gzip_page(frames.AssignmentFrames.as_view())),
     path("frames/<int:number>/", frames.FrameView.as_view()),
     path("frames/<int:number>/history/", frames.HistoryView.as_view()),
     path("submit/", SubmitView.as_view()),
 ]
 START: dict[str, Any] = {**IN_LAYER, "find": layer_start_place}
 layer = [
-    path("scene/", frames.SceneView.as_view(**START)),
-    path("frames/", frames.LayerFrames.as_view(**IN_LAYER)),
+    path("scene/", gzip_page(frames.SceneView.as_view(**START))),
+    path("frames/", gzip_page(frames.LayerFrames.as_view(**IN_LAYER))),
     path("frames/<int:number>/", frames.FrameView.as_view(**IN_LAYER)),
     path("frames/<int:number>/history/", frames.HistoryView.as_view(**IN_LAYER)),
 ]
 # The same for a part of a long layer: the workbench opens no more of it.
 one_part = [
-    path("scene/", frames.SceneView.as_view(**START, schema=None)),
-    path("frames/", frames.LayerFrames.as_view(**IN_LAYER, schema=None)),
+    path("scene/", gzip_page(frames.SceneView.as_view(**START, schema=None))),
+    path("frames/", gzip_page(frames.LayerFrames.as_view(**IN_LAYER, schema=None))),
     path("frames/<int:number>/", frames.FrameView.as_view(**IN_LAYER, schema=None)),
     path("frames/<int:number>/history/", frames.HistoryView.as_view(**IN_LAYER, schema=None)),
 ]
 learning = [
-    path("scene/", tutorial.TutorialScene.as_view()),
-    path("frames/", tutorial.TutorialFrames.as_view()),
+    path("scene/", gzip_page(tutorial.TutorialScene.as_view())),
+    path("frames/", gzip_page(tutorial.TutorialFrames.as_view())),
     path("frames/<int:number>/", tutorial.TutorialFrame.as_view()),
     path("check/", tutorial.TutorialCheck.as_view()),
     path("done/", tutorial.TutorialDone.as_view()),
@@ -113,8 +116,8 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("layers/<int:layer>/", include(layer)),
     path("layers/<int:layer>/from/<int:first>/", include(one_part)),
     path("tutorial/", include(learning)),
-    re_path(r"^images/(?P<digest>[0-9a-f]{64})\.jpg$", ImageView.as_view()),
+    re_path(r"^images/(?P<digest>[0-9a-f]{64})\.jpg$", ImageView.as_view(), name="picture"),
     path("schema/", SpectacularAPIView.as_view(**staff), name="schema"),
-    path("docs/", SpectacularSwaggerView.as_view(url_name="schema", **staff), name="docs"),
+    path("docs/", DocsView.as_view(url_name="schema", **staff), name="docs"),
     re_path("", MissingView.as_view()),
 ]

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import ctypes
+import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import lru_cache
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Thread
 from typing import Any
 
 import cv2
@@ -104,10 +106,15 @@ def _runner(workers: int) -> Iterator[Callable[[list[Job]], Iterator[int]]]:
             for future in as_completed([pool.submit(function, *given) for function, *given in jobs]):
                 yield future.result()
 
-        yield run
+        try:
+            yield run
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)  # nobody waits for the rest
+            raise
 
 
 def _start_worker() -> None:
+    Thread(target=_end_with_parent, daemon=True).start()
     cv2.setNumThreads(1)
     # By default glibc returns every large array to the kernel, which clears the same memory again for the
     # next one: a quarter of all the time. Other C libraries have no mallopt, and are only slower.
@@ -115,6 +122,14 @@ def _start_worker() -> None:
         mallopt = ctypes.CDLL(None).mallopt
         for parameter, size in MALLOC_HABITS.items():
             mallopt(parameter, size)
+
+
+def _end_with_parent() -> None:
+    """A worker waits for work for ever, also for that of a parent that was killed."""
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 @lru_cache(maxsize=1)

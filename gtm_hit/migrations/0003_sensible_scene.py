@@ -6,7 +6,7 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('gtm_hit', '0001_initial'),
+        ('gtm_hit', '0002_access'),
     ]
 
     operations = [

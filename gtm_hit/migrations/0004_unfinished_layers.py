@@ -5,7 +5,7 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('gtm_hit', '0002_sensible_scene'),
+        ('gtm_hit', '0003_sensible_scene'),
     ]
 
     operations = [

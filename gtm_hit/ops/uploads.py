@@ -7,13 +7,14 @@
 from __future__ import annotations
 
 import logging
+import os
 import re
 import shutil
 import stat
 import zipfile
 import zlib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import Path, PurePosixPath
@@ -21,7 +22,7 @@ from tempfile import TemporaryDirectory
 from uuid import uuid4
 
 from django.conf import settings
-from django.core.files.uploadedfile import UploadedFile
+from django.core.files.uploadedfile import TemporaryUploadedFile, UploadedFile
 from django.utils import timezone
 
 from gtm_hit.formats.dataset_folder import natural_key
@@ -106,14 +107,25 @@ def keep(upload: UploadedFile) -> Source:
     stem = _UNSAFE.sub("-", Path(upload.name or "").stem).strip(".-")[:60] or "dataset"
     path = settings.UPLOADS_ROOT / f"{stem}-{uuid4().hex[:8]}.zip"
     try:
-        with replacing(path) as stream:
-            for chunk in upload.chunks():
-                stream.write(chunk)
+        _take(upload, path)
         checked_entries(path)
     except FormatError as error:
         path.unlink(missing_ok=True)
         raise error.relative_to(settings.UPLOADS_ROOT) from error
     return Source(f"uploads/{path.name}", path)
+
+
+def _take(upload: UploadedFile, path: Path) -> None:
+    """Large uploads lie on the disk already, and only get a second name."""
+    if isinstance(upload, TemporaryUploadedFile):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with suppress(OSError):  # on another disk
+            upload.flush()
+            os.link(upload.temporary_file_path(), path)
+            return
+    with replacing(path) as stream:
+        for chunk in upload.chunks():
+            stream.write(chunk)
 
 
 def checked_entries(path: Path) -> list[zipfile.ZipInfo]:
@@ -212,7 +224,8 @@ def let_go(key: str, job: Job) -> None:
 
 
 def remove_leftovers() -> None:
-    """What killed workers and commands unpacked, and archives nobody imported for a week."""
+    """What killed workers and commands unpacked, archives nobody imported for a week, and halves of them."""
+    _remove_halves()
     if not settings.UPLOADS_ROOT.is_dir():
         return
     running = set(Job.objects.filter(state=Job.State.RUNNING).values_list("pk", "attempts"))
@@ -237,6 +250,14 @@ def _wanted(but: Job | None = None) -> set[str]:
     if but is not None:
         jobs = jobs.exclude(pk=but.pk)
     return {key for key in jobs.values_list("parameters__source", flat=True) if key}
+
+
+def _remove_halves() -> None:
+    """What servers that were killed had received so far."""
+    oldest = (timezone.now() - KEPT).timestamp()
+    for path in Path(settings.FILE_UPLOAD_TEMP_DIR).glob("*"):
+        if path.is_file() and path.stat().st_mtime < oldest:
+            path.unlink(missing_ok=True)
 
 
 def _reason_against(info: zipfile.ZipInfo) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 from django.contrib.auth.models import User
 from django.contrib.auth.views import redirect_to_login
 from django.http import HttpRequest, HttpResponseBase
+from django.urls import reverse
 
 View = Callable[..., HttpResponseBase]
 
@@ -25,7 +26,7 @@ def staff_only(view: View) -> View:
         if request.user.is_active and request.user.is_staff:
             return view(request, *args, **kwargs)
         # A form cannot be sent again after the login, so its address is no place to return to.
-        wanted = request.get_full_path() if request.method in {"GET", "HEAD"} else "/"
+        wanted = request.get_full_path() if request.method in {"GET", "HEAD"} else reverse("home")
         return redirect_to_login(wanted)
 
     return guarded

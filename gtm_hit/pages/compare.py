@@ -12,7 +12,7 @@ from django import forms
 from django.core.paginator import Paginator
 from django.http import Http404, HttpRequest, HttpResponse
 from django.shortcuts import render
-from django.urls import path
+from django.urls import get_script_prefix, path
 from django.utils.safestring import mark_safe
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_lazy
@@ -176,7 +176,7 @@ def compare_view(request: HttpRequest, slug: str) -> HttpResponse:
         "query": asked.query,
         "marks": marks_address(asked),
         "viewer": {
-            "scene": f"/api/v1/layers/{truth.pk}/",
+            "scene": f"{get_script_prefix()}api/v1/layers/{truth.pk}/",
             "truth": truth.name,
             "found": found.name,
             "frames": lines,
@@ -191,7 +191,9 @@ def marks_address(asked: Asked) -> str:
     wanted = asked.context["form"].cleaned_data
     query = {"truth": truth.name, "found": found.name, "radius": comparison.radius}
     query |= {"scope": wanted["frames"], "start": wanted["start"]}
-    return f"/api/v1/datasets/{truth.dataset.slug}/evaluation/frames/0/?{urlencode(query)}"
+    return (
+        f"{get_script_prefix()}api/v1/datasets/{truth.dataset.slug}/evaluation/frames/0/?{urlencode(query)}"
+    )
 
 
 def base_name(asked: Asked) -> str:

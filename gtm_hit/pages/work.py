@@ -9,7 +9,7 @@ from typing import Any
 
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
-from django.urls import path, reverse
+from django.urls import get_script_prefix, path, reverse
 from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods, require_POST, require_safe
 
@@ -155,7 +155,7 @@ def learn(request: HttpRequest, token: str) -> HttpResponse:
     home_url = reverse("work-home", args=[token])
     if not tutorial.available():
         return redirect(home_url)
-    return workbench(request, api="/api/v1/tutorial/", token=token, mode="tutorial", home=home_url)
+    return workbench(request, api=api("tutorial/"), token=token, mode="tutorial", home=home_url)
 
 
 @require_safe
@@ -167,7 +167,7 @@ def annotate(request: HttpRequest, token: str) -> HttpResponse:
     if assignments.read_only_reason(assignment) == "expired":
         return render(request, "work/expired.html", {"token": seat_token, "assignment": assignment})
     home_url = reverse("work-home", args=[seat_token])
-    return workbench(request, api="/api/v1/assignment/", token=token, mode="assignment", home=home_url)
+    return workbench(request, api=api("assignment/"), token=token, mode="assignment", home=home_url)
 
 
 @require_safe
@@ -178,8 +178,12 @@ def layer(request: HttpRequest, slug: str, name: str) -> HttpResponse:
     home_url = reverse("dataset-layers", args=[slug])
     asked = request.GET.get("from", "")
     part = parts.part_of(found, int(asked) if asked.isdecimal() and len(asked) < 10 else None)
-    address = f"/api/v1/layers/{found.pk}/" + (f"from/{part.first}/" if part else "")
+    address = api(f"layers/{found.pk}/") + (f"from/{part.first}/" if part else "")
     return workbench(request, api=address, token="", mode="layer", home=home_url)
+
+
+def api(path: str) -> str:
+    return f"{get_script_prefix()}api/v1/{path}"
 
 
 def workbench(request: HttpRequest, **context: str) -> HttpResponse:

@@ -209,5 +209,5 @@ function mapColours() {
 
 /** Where signing in again leads back to: staff log in, workers have their own page. */
 function signInAddress(mode, home) {
-  return mode === "layer" ? `/login/?next=${encodeURIComponent(home)}` : home;
+  return mode === "layer" ? `${document.body.dataset.login}?next=${encodeURIComponent(home)}` : home;
 }

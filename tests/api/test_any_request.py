@@ -84,7 +84,8 @@ def ask(operation: Any, headers: dict[str, str], layer: int, answered: Counter[i
             case.path_parameters = {
                 name: known.get(name, value) for name, value in (case.path_parameters or {}).items()
             }
-        response = case.call(headers=headers)
+        # It offers to unpack what is compressed, but in this process nobody does.
+        response = case.call(headers={**headers, "Accept-Encoding": "identity"})
         answered[response.status_code] += 1
         case.validate_response(response, checks=CHECKS)
 
