@@ -3,6 +3,7 @@ import { ApiError } from "./api.js";
 import { ask } from "./dialogs.js";
 import { element } from "./dom.js";
 import { gettext, ngettext } from "./messages.js";
+import { problemWords } from "./problems.js";
 
 /** What there is to say about every frame of a batch before it is handed in. */
 export function summary(store) {
@@ -39,7 +40,7 @@ async function submit({ api, walk, notices, home }) {
     window.location.assign(home);
   } catch (error) {
     const frames = error instanceof ApiError && error.code === "unfinished" ? error.details.frames : [];
-    notices.say(gettext("Not submitted: {reason}", { reason: error.message }));
+    notices.say(gettext("Not submitted: {reason}", { reason: problemWords(error) }));
     if (frames.length) return walk.open(frames[0]);
   }
 }

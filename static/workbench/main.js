@@ -1,6 +1,7 @@
 import { element } from "./dom.js";
 import { fetchParts } from "./fetched.js";
 import { gettext } from "./messages.js";
+import { problemWords } from "./problems.js";
 import { openSession } from "./session.js";
 import { started } from "./start.js";
 import { buildWorkbench } from "./workbench.js";
@@ -20,7 +21,7 @@ try {
       "div",
       { className: "start-problem", role: "alert" },
       element("h1", {}, gettext("The workbench could not start")),
-      element("p", {}, error.message),
+      element("p", {}, problemWords(error)),
       element("p", {}, gettext("Nothing is lost: edits are kept on this computer until the server has them.")),
       element("button", { type: "button", className: "main", onclick: () => window.location.reload() }, gettext("Try again")),
       element("a", { href: home }, gettext("Back")),

@@ -1,6 +1,7 @@
 import { changed } from "./annotation.js";
 import { patch } from "./commands.js";
 import { gettext } from "./messages.js";
+import { problemWords } from "./problems.js";
 
 const STEP = { height: 0.02, radius: 0.01 }; // metres
 const LIMITS = { height: [0.5, 2.5], radius: [0.05, 0.8] }; // metres; wheelchairs and prams included
@@ -65,7 +66,7 @@ export class Sizes {
       for (let number = missing(); number !== undefined; number = missing()) await this.walk.loader.load(number, false);
       return true;
     } catch (error) {
-      this.notices.say(gettext("The later frames did not arrive: {error}", { error: error.message }));
+      this.notices.say(gettext("The later frames did not arrive: {error}", { error: problemWords(error) }));
       return false;
     } finally {
       this._loading = false;

@@ -1,5 +1,6 @@
 import { element, setText } from "./dom.js";
 import { gettext } from "./messages.js";
+import { problemWords } from "./problems.js";
 import { Spotlight } from "./spotlight.js";
 import { tutorialSteps, whatMatters } from "./tutorial_steps.js";
 
@@ -88,7 +89,7 @@ export class Tutorial {
       if (ok) this._praise(message);
       else if (loud) setText(this._verdict, message);
     } catch (error) {
-      if (loud) setText(this._verdict, gettext("The answer could not be checked: {error}", { error: error.message }));
+      if (loud) setText(this._verdict, gettext("The answer could not be checked: {error}", { error: problemWords(error) }));
     }
   }
 
@@ -118,7 +119,7 @@ export class Tutorial {
       await this._api.finishTutorial();
       window.location.assign(this._home);
     } catch (error) {
-      setText(this._verdict, error.message);
+      setText(this._verdict, problemWords(error));
     }
   }
 
