@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
+from gtm_hit.geometry.cylinder import HEIGHTS, RADII
 from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, LayerFrame
 from gtm_hit.ops.neighbours import Neighbours, neighbours
 
@@ -27,6 +28,7 @@ def dataset_part(dataset: Dataset) -> dict[str, Any]:
             "origin": [grid.origin_x, grid.origin_y],
         },
         "cylinder": {"radius": dataset.cylinder_radius, "height": dataset.cylinder_height},
+        "sizes": {"height": HEIGHTS, "radius": RADII},
         "foot_rule": dataset.foot_rule,
         "cameras": [camera_part(camera) for camera in dataset.cameras.order_by("index")],
     }

@@ -162,6 +162,7 @@ class SceneSerializer(serializers.Serializer[Any]):
     dataset = serializers.DictField()
     grid = serializers.DictField()
     cylinder = serializers.DictField()
+    sizes = serializers.DictField(help_text="height, radius: the least and the most metres a person may have")
     foot_rule = serializers.CharField()
     cameras = SceneCameraSerializer(many=True)
     frames = SceneFrameSerializer(many=True)
