@@ -11,7 +11,9 @@ pytestmark = pytest.mark.browser
 
 STATIC = REPOSITORY / "static"
 STARTING = {"workbench/main.js", "workbench/start.js", "site/compare/main.js"}
-SCRIPTS = {f"site/{path.name}" for path in (STATIC / "site").glob("*.js")}  # of ordinary pages, run as they are
+SCRIPTS = {
+    f"site/{path.name}" for path in (STATIC / "site").glob("*.js")
+}  # of ordinary pages, run as they are
 
 
 def modules() -> list[str]:

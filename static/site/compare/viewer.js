@@ -1,5 +1,6 @@
 import { mapColours, startOptions } from "../../workbench/display.js";
 import { element, setText } from "../../workbench/dom.js";
+import { chord } from "../../workbench/key_press.js";
 import { Layout } from "../../workbench/layout.js";
 import { gettext } from "../../workbench/messages.js";
 import { Panes } from "../../workbench/panes.js";
@@ -54,9 +55,8 @@ function following(store) {
 }
 
 function onKey(event, actions) {
-  if (event.ctrlKey || event.altKey || event.metaKey) return;
-  const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-  if (event.shiftKey || !(name in actions)) return;
+  const name = chord(event);
+  if (!(name in actions)) return;
   event.preventDefault();
   actions[name]();
 }
