@@ -50,6 +50,7 @@ export async function buildWorkbench(root, session, { mode, home }) {
   const walk = new Walk({ ...session, notices, finish });
   const page = { settings, panes, notices, walk };
   const placing = placingParts(session, page);
+  const { guard, heads, ghost } = placing;
   const playback = new Playback({ ...session, walk, settings });
   const actions = new Actions();
   const perform = (id, event) => {
@@ -59,7 +60,7 @@ export async function buildWorkbench(root, session, { mode, home }) {
   };
   const bar = new Bar({ ...session, panes, perform, home, signIn: signInAddress(mode, home) });
   const select = (person) => {
-    placing.ghost.hide();
+    ghost.hide();
     store.select(person);
   };
   const panel = new PeoplePanel({ scene, store, select });
@@ -68,19 +69,22 @@ export async function buildWorkbench(root, session, { mode, home }) {
   root.replaceChildren(bar.element, stage, timeline.element, notices.element);
   const layout = new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
   const views = new Views({ panes, layout, settings, notices });
-  const identity = new IdentityActions({ ...session, panes, notices, guard: placing.guard });
+  const identity = new IdentityActions({ ...session, panes, notices, guard });
   fillTable(actions, session, page, { ...placing, select, playback, identity, views, setControls: connectKeyboard(bar, perform, settings) });
   actions.use(chooseViews(root, views, page));
   new Paths(panes, settings);
   showFilmstrip(timeline, notices, { ...session, walk, panes, settings });
-  if (mode !== "tutorial") {
-    const list = warn(session, { ...page, actions, identity });
-    panel.element.append(panelTools(store, perform, placing.heads), list, new Hints({ store, panes, settings }).element);
-    actions.use(frameHistory(panel, { ...session, panes, notices, guard: placing.guard }));
-  }
+  if (mode !== "tutorial") addForWork(panel, session, page, { actions, perform, identity, heads, guard });
   watch(session, panes, notices);
   walk.carryInto(store.current);
   if (mode === "tutorial") await startTutorial(panel, { ...session, panes, walk, home });
+}
+
+/** What the tutorial does without: buttons about the person, warnings, hints, the frame's history. */
+function addForWork(panel, session, page, { actions, perform, identity, heads, guard }) {
+  const list = warn(session, { ...page, actions, identity });
+  panel.element.append(panelTools(session.store, perform, heads), list, new Hints({ ...page, store: session.store }).element);
+  actions.use(frameHistory(panel, { ...session, ...page, guard }));
 }
 
 /** What keys, buttons and the pointer do. Going one by one means something else by some of the keys, so it comes last. */

@@ -16,7 +16,9 @@ delete Map.groupBy;
 delete Object.groupBy;
 delete Promise.withResolvers;
 delete Promise.try;
-for (const name of ["popover", "showPopover", "hidePopover", "togglePopover"]) delete HTMLElement.prototype[name];
+for (const name of ["popover", "showPopover", "hidePopover", "togglePopover"]) {
+  delete HTMLElement.prototype[name];
+}
 """
 
 # Newer than Chrome 111, Firefox 121 or Safari 16.4, and nothing to fall back on.

@@ -38,7 +38,8 @@ const picture = async (width, height) => {
 };
 const blobs = { light: await picture(960, 540), full: await picture(1920, 1080) };
 const numbers = [...Array(10).keys()];
-const cameras = [...Array(7).keys()].map((index) => ({ index, name: `C${index}`, width: 1920, height: 1080 }));
+const size = { width: 1920, height: 1080 };
+const cameras = [...Array(7).keys()].map((index) => ({ index, name: `C${index}`, ...size }));
 const addresses = cameras.map(({ index }) => ({ camera: index, light: "light", full: "full" }));
 const frames = numbers.map((number) => ({ number, images: addresses }));
 const images = new Images({ blob: async (address) => blobs[address] }, { frames, cameras }, BUDGET);
@@ -119,7 +120,10 @@ def test_views_too_large_for_the_budget_stay_light_and_nothing_is_fetched_again_
         await settle(() => images.peek(0, 6, "light"));
         await settle(() => sharp(0) === 7 || counted.alive > 36_000_000);
         const before = fetched;
-        for (let tries = 0; tries < 20; tries += 1) { sharp(0); await new Promise((done) => setTimeout(done, 5)); }
+        for (let tries = 0; tries < 20; tries += 1) {
+          sharp(0);
+          await new Promise((done) => setTimeout(done, 5));
+        }
         const shown = paint(0, 1).map(({ bitmap }) => bitmap?.width);
         const count = (width) => shown.filter((one) => one === width).length;
         return [counted.most, count(1920), count(960), fetched - before];
