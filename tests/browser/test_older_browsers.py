@@ -79,4 +79,4 @@ def test_colours_of_both_themes_have_a_plain_one_to_fall_back_on() -> None:
 
 
 def without_comments(text: str) -> str:
-    return re.sub(r"/\*.*?\*/|//.*$", "", text, flags=re.DOTALL | re.MULTILINE)
+    return re.sub(r"/\*[\s\S]*?\*/|//.*$", "", text, flags=re.MULTILINE)
