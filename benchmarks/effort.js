@@ -48,7 +48,7 @@ function makeSession(scene, journal) {
   const saver = new Saver({ api, store, journal, activity, practice: true });
   const history = new History(store, (patch) => withRefill(store, scene, patch));
   loader.connect(saver, empty);
-  return { api, scene, store, history, saver, loader, journal, images: new Images(api, scene.frames), activity };
+  return { api, scene, store, history, saver, loader, journal, images: new Images(api, scene), activity };
 }
 
 class Annotator {

@@ -17,6 +17,7 @@ import numpy as np
 from playwright.sync_api import Browser, Route, ViewportSize, sync_playwright
 
 from gtm_hit.formats.camera_json import load_cameras
+from gtm_hit.geometry.cylinder import HEIGHTS, RADII
 from gtm_hit.geometry.grid import Grid
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -168,6 +169,7 @@ def scene(frames: int) -> dict[str, Any]:
             "origin": [GRID.origin_x, GRID.origin_y],
         },
         "cylinder": {"radius": 0.16, "height": 1.8},
+        "sizes": {"height": HEIGHTS, "radius": RADII},
         "foot_rule": "corners",
         "cameras": [
             {

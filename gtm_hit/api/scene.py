@@ -9,6 +9,7 @@ from typing import Any
 from django.urls import get_script_prefix
 from rest_framework import serializers
 
+from gtm_hit.geometry.cylinder import HEIGHTS, RADII
 from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, LayerFrame
 from gtm_hit.ops.neighbours import Neighbours, neighbours
 
@@ -50,6 +51,7 @@ class SceneSerializer(serializers.Serializer[Any]):
     dataset = serializers.DictField()
     grid = serializers.DictField()
     cylinder = serializers.DictField()
+    sizes = serializers.DictField(help_text="height, radius: the least and the most metres a person may have")
     foot_rule = serializers.CharField()
     cameras = SceneCameraSerializer(many=True)
     frames = SceneFrameSerializer(many=True)
@@ -82,6 +84,7 @@ def dataset_part(dataset: Dataset) -> dict[str, Any]:
             "origin": [grid.origin_x, grid.origin_y],
         },
         "cylinder": {"radius": dataset.cylinder_radius, "height": dataset.cylinder_height},
+        "sizes": {"height": HEIGHTS, "radius": RADII},
         "foot_rule": dataset.foot_rule,
         "cameras": [camera.as_json() for camera in dataset.calibrated_cameras()],
     }

@@ -13,6 +13,8 @@ from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.grid import Grid, Precision
 from gtm_hit.geometry.rectangle_rule import centre_rule, corners_rule
 
+HEIGHTS = (0.3, 3.0)  # metres an annotated person may have: a pram, a child on shoulders
+RADII = (0.05, 2.0)  # metres
 BLOCK = 8192  # positions worked on together: their temporaries stay in the processor's cache
 
 

@@ -10,6 +10,7 @@ from django.conf import settings
 from django.db import models
 from django.db.models import Q
 
+from gtm_hit.geometry.cylinder import HEIGHTS, RADII
 from gtm_hit.models.dataset import Dataset, Frame, name_validator
 
 
@@ -111,11 +112,11 @@ class Annotation(models.Model):
         constraints = [
             models.UniqueConstraint(fields=["layer", "frame", "person"], name="person_once_per_frame"),
             models.CheckConstraint(
-                condition=Q(height__isnull=True) | Q(height__gt=0, height__lte=3),
+                condition=Q(height__isnull=True) | Q(height__range=HEIGHTS),
                 name="annotation_height_sensible",
             ),
             models.CheckConstraint(
-                condition=Q(radius__isnull=True) | Q(radius__gt=0, radius__lte=2),
+                condition=Q(radius__isnull=True) | Q(radius__range=RADII),
                 name="annotation_radius_sensible",
             ),
         ]

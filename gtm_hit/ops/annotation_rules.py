@@ -9,13 +9,12 @@ from typing import Any
 from django.utils.translation import gettext as _
 
 from gtm_hit.formats.problems import MOST_PROBLEMS, shown
+from gtm_hit.geometry.cylinder import HEIGHTS, RADII
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.models import Annotation
 
 MAX_PEOPLE = 500
 MAX_PERSON = 2**31 - 1  # PostgreSQL's integer
-HEIGHTS = (0.3, 3.0)  # metres
-RADII = (0.05, 2.0)  # metres
 MAX_SECONDS = 24 * 3600.0
 
 Row = dict[str, Any]

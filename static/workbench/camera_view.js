@@ -45,12 +45,9 @@ export class CameraView {
 
   /** The picture to show for a frame, sharp enough for the transform. */
   picture(frame, transform, ratio) {
-    const light = this._images.get(frame, this.index, "light");
-    const lightWidth = light.bitmap?.width ?? this.size.width;
+    const lightWidth = this._images.peek(frame, this.index, "light")?.width ?? this.size.width;
     const needed = (transform.scale * ratio * this.size.width) / lightWidth;
-    if (needed < FULL_FROM || lightWidth >= this.size.width) return light;
-    const full = this._images.get(frame, this.index, "full");
-    return full.bitmap ? full : light;
+    return this._images.show(frame, this.index, needed >= FULL_FROM && lightWidth < this.size.width);
   }
 
   retry(frame) {

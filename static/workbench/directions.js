@@ -18,19 +18,26 @@ const GROUND = {
   down: { columns: 0, rows: -1 },
 };
 
-/** What each arrow key does to `annotation`: {left: {columns, rows}, right, up, down}. */
-export function arrowSteps(panes, annotation) {
-  if (panes.held?.steps) return panes.held.steps;
-  if (panes.settings.get("arrowAxes") === "ground") return GROUND;
-  const seeing = [panes.active, ...panes.shown].find((pane) => pane.view.box(annotation));
-  return seeing?.view.axes(annotation) ?? GROUND;
+export class Arrows {
+  /** @param {{held: import("./held.js").Held}} parts */
+  constructor({ panes, settings, held }) {
+    Object.assign(this, { _panes: panes, _settings: settings, _held: held });
+  }
+
+  /** What each arrow key does to `annotation`: {left: {columns, rows}, right, up, down}. */
+  steps(annotation) {
+    if (this._held.steps) return this._held.steps;
+    if (this._settings.get("arrowAxes") === "ground") return GROUND;
+    const seeing = [this._panes.active, ...this._panes.shown].find((pane) => pane.view.box(annotation));
+    return seeing?.view.axes(annotation) ?? GROUND;
+  }
 }
 
 /** Items for `Panes.addExtra`. */
-export function directionItems(panes, pane) {
+export function directionItems(panes, arrows, pane) {
   const person = panes.people().get(panes.store.selection);
   if (!panes.options.directions || !person || !pane.view.box(person)) return [];
-  const steps = arrowSteps(panes, person);
+  const steps = arrows.steps(person);
   const from = onPane(pane, panes.scene.metres(person.position));
   if (!from) return [];
   const room = LENGTH + 26;

@@ -9,3 +9,9 @@ export function failureWords(error) {
   if (error.code === "unknown" || error.code === "unreadable") return gettext("the server does not answer properly");
   return error.message;
 }
+
+/** The same for what can fail in other ways too, as a picture that cannot be decoded. */
+export function problemWords(error) {
+  const ours = error instanceof NetworkError || error instanceof ApiError;
+  return ours ? failureWords(error) : error.message;
+}

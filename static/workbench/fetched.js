@@ -5,8 +5,7 @@ const BESIDE = 500; // ms after the first action: opening is over, and nobody mi
 const LEAVING = 600; // ms; a page that is being left stops its requests, but runs no timers any more
 const TIMEOUT = 20_000; // ms; whoever waits for a part on a dead connection would wait for ever
 const MEANT_FOR_IT = 1000; // ms in which keys pressed after asking for a dialog are not meant for the page
-// Whatever the page itself is made of is here before this line is run.
-const present = new Set(performance.getEntriesByType("resource").map(({ name }) => name));
+const present = new Set(); // addresses of modules that are here
 const parts = new Set(); // addresses
 let dialogs = 0; // under way
 
@@ -20,6 +19,7 @@ let dialogs = 0; // under way
  */
 export function fetched(notices, address, make = (module) => module, loaded = load) {
   let part = null;
+  if (!parts.size) notePresent();
   parts.add(address);
   return async () => {
     if (part) return part;
@@ -30,6 +30,11 @@ export function fetched(notices, address, make = (module) => module, loaded = lo
     }
     return module ? (part ??= make(module)) : null;
   };
+}
+
+/** Whatever the page itself is made of is here before its first part is spoken of. */
+function notePresent() {
+  for (const { name } of performance.getEntriesByType("resource")) present.add(name);
 }
 
 /** A part that is a dialog: for a moment keys wait for it instead of changing something behind it. */

@@ -47,9 +47,9 @@ export class Filmstrip {
   }
 
   _resize() {
-    const [width, height] = [this._canvas.clientWidth / unit, this._canvas.clientHeight / unit];
+    const [width, height] = [this._canvas.clientWidth / unit(), this._canvas.clientHeight / unit()];
     if (!width || !height) return;
-    this._ratio = (window.devicePixelRatio || 1) * unit;
+    this._ratio = (window.devicePixelRatio || 1) * unit();
     Object.assign(this._canvas, { width: Math.round(width * this._ratio), height: Math.round(height * this._ratio) });
     this._room = { width, height };
     this._painted.clear();

@@ -3,8 +3,8 @@ import { gettext } from "./messages.js";
 
 /** Who may be edited, and why not: every refusal is said where the annotator looks. */
 export class Guard {
-  constructor({ scene, store, saver, panes, notices }) {
-    Object.assign(this, { scene, store, saver, panes, notices });
+  constructor({ store, saver, panes, notices }) {
+    Object.assign(this, { store, saver, panes, notices });
   }
 
   get editable() {

@@ -81,7 +81,7 @@ function boundsOf(view, people) {
 }
 
 function drawn(view, bounds, mapColours, paths, current, title) {
-  const ratio = (window.devicePixelRatio || 1) * unit;
+  const ratio = (window.devicePixelRatio || 1) * unit();
   const label = `${title}: ${paths.map(({ person, people }) => ngettext("person {person} in {n} frame", "person {person} in {n} frames", people.length, { person })).join(", ")}`;
   const canvas = element("canvas", { width: SIZE.width * ratio, height: SIZE.height * ratio, role: "img", "aria-label": label });
   const ctx = canvas.getContext("2d");

@@ -1,5 +1,7 @@
 import { element, setText } from "./dom.js";
-import { chord, clash, groupTitle, keyName, keyTable } from "./keys.js";
+import { groupBy } from "./group_by.js";
+import { chord } from "./key_press.js";
+import { clash, groupTitle, keyName, keyTable } from "./keys.js";
 import { gettext } from "./messages.js";
 
 const MODIFIERS = ["Shift", "Control", "Alt", "Meta", "AltGraph"];
@@ -19,7 +21,7 @@ export class KeySheet {
   }
 
   _build() {
-    const groups = Map.groupBy(keyTable(), ({ group }) => group);
+    const groups = groupBy(keyTable(), ({ group }) => group);
     this.element.replaceChildren(
       ...[...groups].map(([group, rows]) =>
         element("section", {}, element("h3", {}, groupTitle(group)), element("dl", {}, rows.flatMap((row) => this._row(row)))),

@@ -1,5 +1,6 @@
 import { dialogArrives } from "./fetched.js";
-import { chord, keyTable } from "./keys.js";
+import { chord, tellsForeign } from "./key_press.js";
+import { keyTable } from "./keys.js";
 
 const FORM = "input, select, textarea, [contenteditable]";
 
@@ -14,6 +15,7 @@ export class Keyboard {
     this._onMode = onMode;
     this.learn();
     this.controls = false;
+    this._foreign = false; // whether the last letter was not a Latin one
     this._listener = (event) => this._onKey(event);
     document.addEventListener("keydown", this._listener);
   }
@@ -35,7 +37,8 @@ export class Keyboard {
   _onKey(event) {
     if (event.defaultPrevented || document.querySelector("dialog:modal")) return;
     if (event.target.closest?.(FORM)) return;
-    const pressed = chord(event);
+    this._foreign = tellsForeign(event) ?? this._foreign;
+    const pressed = chord(event, this._foreign);
     const id = this._actions.get(pressed);
     if (!id || (this.controls && belongsToControls(pressed))) return;
     event.preventDefault();

@@ -1,6 +1,6 @@
 /**
  * The one table of keys: the keyboard, the help sheet and the tooltips are made from it. `keys` are chords as
- * `chord()` writes them. `labels` are texts for translation. An annotator may have chosen other keys.
+ * `chord()` of key_press.js writes them. `labels` are texts for translation. An annotator may have chosen other keys.
  */
 import { gettext } from "./messages.js";
 
@@ -121,14 +121,6 @@ export function titleFor(id) {
 
 export function groupTitle(group) {
   return GROUPS[group]();
-}
-
-/** A keyboard event as text: "Shift+ArrowLeft", "Ctrl+z", "?". Command counts as Ctrl. */
-export function chord(event) {
-  const letter = event.key.length === 1;
-  const key = letter ? event.key.toLowerCase() : event.key;
-  const shifted = event.shiftKey && (!letter || event.key.toLowerCase() !== event.key.toUpperCase());
-  return [event.ctrlKey || event.metaKey ? "Ctrl+" : "", event.altKey ? "Alt+" : "", shifted ? "Shift+" : "", key].join("");
 }
 
 /** A chord as it is printed on keys. */

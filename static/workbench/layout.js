@@ -70,8 +70,12 @@ export class Layout {
     this.update();
   }
 
+  get large() {
+    return this._large;
+  }
+
   update() {
-    const [width, height] = [this._container.clientWidth / unit, this._container.clientHeight / unit];
+    const [width, height] = [this._container.clientWidth / unit(), this._container.clientHeight / unit()];
     if (!width || !height) return;
     const { shown, all } = this._panes;
     const arrangement = (this._large ? arrangeAround : arrange)(shown.length, { width, height }, this._aspect);

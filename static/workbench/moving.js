@@ -1,8 +1,6 @@
 import { changed } from "./annotation.js";
 import { freePosition } from "./carry.js";
 import * as commands from "./commands.js";
-import { arrowSteps } from "./directions.js";
-import { Held } from "./held.js";
 import { keyFor } from "./keys.js";
 import { gettext } from "./messages.js";
 import { spotOn } from "./spot.js";
@@ -11,10 +9,9 @@ const FAR = 10; // positions a step with Shift goes
 
 /** Placing people and moving them, by click and by arrow key. */
 export class Moving {
-  constructor({ scene, store, history, panes, guard, ghost, sightings, settings, heads }) {
-    Object.assign(this, { scene, store, history, panes, guard, ghost, sightings, heads });
-    this._held = new Held(settings);
-    panes.held = this._held;
+  constructor({ scene, store, history, guard, ghost, sightings, heads, arrows, held }) {
+    Object.assign(this, { scene, store, history, guard, ghost, sightings, heads });
+    Object.assign(this, { _arrows: arrows, _held: held });
   }
 
   /** Rows for the table of actions. */
@@ -66,7 +63,7 @@ export class Moving {
   step(name, event, far = null) {
     const person = this.guard.selected();
     if (!person) return;
-    const step = this._held.press(name, event, () => arrowSteps(this.panes, person))[name];
+    const step = this._held.press(name, event, () => this._arrows.steps(person))[name];
     const beside = () => this.guard.besideFoot(person);
     for (let cells = far ?? this._held.pace; cells > 0; cells = far ? 0 : cells - 1) {
       const position = this._steppedFree(person, step, cells);

@@ -74,13 +74,13 @@ export class Pane {
   /** A pointer event's place, in units of the pane. */
   local(event) {
     const bounds = this.element.getBoundingClientRect();
-    return { x: (event.clientX - bounds.left) / unit, y: (event.clientY - bounds.top) / unit };
+    return { x: (event.clientX - bounds.left) / unit(), y: (event.clientY - bounds.top) / unit() };
   }
 
   /** Where a place of the pane is in the window, in CSS pixels. */
   global({ x, y }) {
     const bounds = this.element.getBoundingClientRect();
-    return { x: bounds.left + x * unit, y: bounds.top + y * unit };
+    return { x: bounds.left + x * unit(), y: bounds.top + y * unit() };
   }
 
   paint() {
@@ -115,8 +115,8 @@ export class Pane {
   }
 
   _resize() {
-    const [width, height] = [this.element.clientWidth / unit, this.element.clientHeight / unit];
-    const ratio = (window.devicePixelRatio || 1) * unit;
+    const [width, height] = [this.element.clientWidth / unit(), this.element.clientHeight / unit()];
+    const ratio = (window.devicePixelRatio || 1) * unit();
     const before = this.room;
     if (!width || !height || (width === before.width && height === before.height && ratio === this._ratio)) return;
     this._ratio = ratio;

@@ -15,16 +15,16 @@ const [ABOVE_FEET, BELOW_FEET] = [0.25, 0.05]; // of a person's height, shown cl
  * the store and marks what has to be painted again. Emits `active` {view}, `zoom` {on} and `options`.
  */
 export class Panes extends Emitter {
-  constructor({ scene, store, images, settings, options }) {
+  /** @param {{people?: () => Map<number, object>}} parts `people`: whom the panes draw, if not the people of the open frame */
+  constructor({ scene, store, images, options, people = null }) {
     super();
     this.scene = scene;
     this.store = store;
-    this.settings = settings;
     this.options = options;
     this.zoomed = false;
     this.closeUp = false; // zoom shows the feet instead of the whole person
     this.preview = null; // a person as an unfinished drag shows them
-    this.held = null; // {steps}: what the arrow keys do while one is held
+    this._people = people;
     this._extras = [];
     this.element = element("div", { className: "panes" });
     const model = this._model();
@@ -73,6 +73,7 @@ export class Panes extends Emitter {
 
   /** The people of the open frame as they are drawn. */
   people() {
+    if (this._people) return this._people();
     const people = this.store.people();
     return this.preview ? new Map(people).set(this.preview.person, this.preview) : people;
   }

@@ -13,7 +13,7 @@ const LARGEST = 60; // CSS pixels per metre
  * @param {{positions: number[], look: object}[]} paths dots along a line, in the given look of looks.js
  */
 export function pathMap(scene, mapColours, paths, label) {
-  const ratio = (window.devicePixelRatio || 1) * unit;
+  const ratio = (window.devicePixelRatio || 1) * unit();
   const canvas = element("canvas", { className: "path-map", width: SIZE.width * ratio, height: SIZE.height * ratio, role: "img", "aria-label": label });
   const view = new MapView(scene, "");
   const points = paths.map(({ positions }) => positions.map((position) => view.point(scene.metres(position))));

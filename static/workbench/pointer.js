@@ -8,11 +8,9 @@ const EDGE = 5; // CSS pixels around the top of the selected box that mean the t
 const LONG = 550; // ms a finger stays in one place to mean "move here"
 const TALL = 30; // CSS pixels a box must have for its top to be taken hold of
 
-/**
- * Pointer events of the panes, as intents: `place`, `select`, `moveHere` (right click, long press), `sight`, `hover`, `leave`, `enlarge`, and a drag of
- * a person (`beginDrag`, `drag`, `drop`, `cancelDrag`). Wheel and other drags change a pane's pan and zoom directly.
- */
+/** Pointer events of the panes, as intents. Wheel and drags of the picture change a pane's pan and zoom directly. */
 export class Pointer {
+  /** @param {import("./intents.js").Intents} intents */
   constructor(panes, intents) {
     this._panes = panes;
     this._intents = intents;
@@ -147,7 +145,7 @@ export class Pointer {
     if (!pane.transform) return;
     const at = pane.local(event);
     const grip = event.shiftKey || this._intents.pointsThrough ? null : this.grip(pane, at);
-    pane.element.dataset.grip = grip?.part ?? "";
+    pane.element.dataset.grip = (this._intents.takesHold && grip?.part) || "";
     this._intents.hover(pane, at, grip?.person ?? null);
   }
 

@@ -9,13 +9,15 @@ import { gettext } from "./messages.js";
  * without a box; whoever is placed then is shown close up, too.
  */
 export class Round {
-  constructor({ store, panes, notices, walk, actions }) {
-    Object.assign(this, { _store: store, _panes: panes, _notices: notices, _walk: walk, _actions: actions });
+  /** @param {{people: import("./people_actions.js").PeopleActions, escape: () => void}} parts what is done when not one by one */
+  constructor({ scene, store, images, panes, notices, walk, tour, dragging, heads, intents, people, escape }) {
+    Object.assign(this, { _store: store, _panes: panes, _notices: notices, _walk: walk, _tour: tour });
+    Object.assign(this, { _dragging: dragging, _heads: heads, _people: people, _escape: escape });
     this._passed = []; // people gone past in this frame, newest last
     store.on("frame", () => (this._passed = []));
     store.on("selection", ({ after }) => this.on && after !== null && !panes.zoomed && panes.zoom(true));
-    actions.afterMove = () => this.on && this._advance();
-    const make = ({ WhoIs }) => new WhoIs({ scene: actions.scene, store, images: walk.images, panes });
+    intents.on("moved", () => this.on && this._advance());
+    const make = ({ WhoIs }) => new WhoIs({ scene, store, images, panes });
     this._showWho = fetched(notices, import.meta.resolve("./whois.js"), make);
   }
 
@@ -25,15 +27,15 @@ export class Round {
 
   /** Rows for the table of actions; those that exist already go on to the next person, too. */
   table() {
-    const actions = this._actions;
+    const people = this._people;
     return {
       round: () => (this.on ? this._leave() : this._enter()),
       roundBack: () => this._back(),
-      validateNext: () => actions.validate() && (this.on ? this._advance() : actions.selectCarried()),
-      validateAll: () => actions.validateAll() && this.on && this._advance(),
-      remove: () => actions.remove() && this.on && this._advance(),
+      validateNext: () => people.validate() && (this.on ? this._advance() : people.selectCarried()),
+      validateAll: () => people.validateAll() && this.on && this._advance(),
+      remove: () => people.remove() && this.on && this._advance(),
       nextFrame: () => this._nextFrame(),
-      escape: () => (this.on && !actions.dragging.active && !actions.heads.active ? this._leave() : actions.escape()),
+      escape: () => (this.on && !this._dragging.active && !this._heads.active ? this._leave() : this._escape()),
     };
   }
 
@@ -57,7 +59,7 @@ export class Round {
 
   /** @returns {boolean} whether somebody is yellow */
   _selectNext() {
-    const next = this._actions.tour.next(this._store.selection ?? this._passed.at(-1) ?? null);
+    const next = this._tour.next(this._store.selection ?? this._passed.at(-1) ?? null);
     if (next) this._store.select(next.person);
     return next !== undefined;
   }

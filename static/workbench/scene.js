@@ -18,6 +18,7 @@ export class Scene {
     this.cameras = json.cameras.map((camera) => new Camera(camera));
     this.grid = new Grid(json.grid);
     this.cylinder = json.cylinder;
+    this.sizes = json.sizes; // {height, radius}: [least, most] metres a person may have
     this.footRule = json.foot_rule;
     this.neighbours = readNeighbours(json.neighbours);
     this._rectangles = new WeakMap();

@@ -4,12 +4,11 @@ import { failureWords } from "./failure_words.js";
 import { gettext } from "./messages.js";
 
 const STEP = { height: 0.02, radius: 0.01 }; // metres
-const LIMITS = { height: [0.5, 2.5], radius: [0.05, 0.8] }; // metres; wheelchairs and prams included
 
 /** Height and width of people. Who gets a size of their own keeps it in all later frames. */
 export class Sizes {
-  constructor({ scene, store, history, guard, walk, notices }) {
-    Object.assign(this, { scene, store, history, guard, walk, notices });
+  constructor({ scene, store, history, guard, loader, notices }) {
+    Object.assign(this, { scene, store, history, guard, loader, notices });
     this._loading = false;
   }
 
@@ -28,7 +27,9 @@ export class Sizes {
     const person = this.guard.selected();
     if (!person) return;
     const now = this.scene.cylinderOf(person)[name];
-    this.set(person, { [name]: allowed(name, (Math.round(now / STEP[name]) + direction) * STEP[name]) });
+    const next = allowed(this.scene, name, (Math.round(now / STEP[name]) + direction) * STEP[name]);
+    if ((next - now) * direction > 0) this.set(person, { [name]: next });
+    else this.guard.say(this.guard.besideFoot(person), limitWords(this.scene, name));
   }
 
   reset() {
@@ -63,7 +64,7 @@ export class Sizes {
     this._loading = true;
     this.notices.say(gettext("Loading the later frames: the person keeps this size in them"));
     try {
-      for (let number = missing(); number !== undefined; number = missing()) await this.walk.loader.load(number, false);
+      for (let number = missing(); number !== undefined; number = missing()) await this.loader.load(number, false);
       return true;
     } catch (error) {
       this.notices.say(gettext("The later frames did not arrive: {error}", { error: failureWords(error) }));
@@ -85,17 +86,23 @@ export function resize(store, person, values) {
 
 /** The height (metres, whole centimetres) whose rectangle in a view ends at `top` (image pixels). */
 export function heightReaching(scene, view, person, top) {
-  let [low, high] = LIMITS.height;
+  let [low, high] = scene.sizes.height;
   while (high - low > 0.005) {
     const middle = (low + high) / 2;
     const box = view.box(changed(person, { height: middle }));
     if (!box || box.ymin < top) high = middle; // too tall to be seen counts as too tall
     else low = middle;
   }
-  return allowed("height", Math.round(low * 100) / 100);
+  return allowed(scene, "height", Math.round(low * 100) / 100);
 }
 
-function allowed(name, metres) {
-  const [least, most] = LIMITS[name];
+function limitWords(scene, name) {
+  const [least, most] = scene.sizes[name].map((metres) => (name === "radius" ? 2 * metres : metres).toFixed(2));
+  if (name === "radius") return gettext("People are {least} to {most} m wide", { least, most });
+  return gettext("People are {least} to {most} m tall", { least, most });
+}
+
+function allowed(scene, name, metres) {
+  const [least, most] = scene.sizes[name];
   return Number(Math.min(Math.max(metres, least), most).toFixed(3));
 }

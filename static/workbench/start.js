@@ -14,7 +14,7 @@ async function start() {
   const api = new Api({ base, token, mode, csrf });
   const scene = await api.scene();
   const first = firstUnfinished(scene);
-  const images = new Images(api, scene.frames);
+  const images = new Images(api, scene);
   images.want([first]);
   return { api, scene, first, images };
 }

@@ -1,3 +1,4 @@
+import { typed } from "./key_press.js";
 import { gettext } from "./messages.js";
 import { PLAIN, paintTone } from "./tones.js";
 
@@ -13,7 +14,7 @@ export class Views {
   /** Rows for the table of actions. */
   table() {
     return {
-      toggleView: (event) => this._toggleNumber(Number(event.key)),
+      toggleView: (event) => this._toggleNumber(Number(typed(event))),
       largeView: () => this.toggleLarge(),
       allViews: () => this.showAll(),
     };

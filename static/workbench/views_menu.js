@@ -7,14 +7,14 @@ export class ViewsMenu {
   constructor(views) {
     this._views = views;
     this._rows = [];
-    this.element = element("section", { className: "views-menu", popover: "manual", "aria-label": gettext("Views") }, this._build());
+    this.element = element("section", { className: "views-menu", hidden: true, "aria-label": gettext("Views") }, this._build());
     this._attach();
     for (const name of ["hiddenViews", "largeView", "tones"]) views.settings.watch(name, () => this._update());
   }
 
   toggle() {
-    this.element.togglePopover();
-    if (this.element.matches(":popover-open")) this.element.querySelector("input").focus();
+    this.element.hidden = !this.element.hidden;
+    if (!this.element.hidden) this.element.querySelector("input").focus();
     else document.activeElement?.blur();
   }
 

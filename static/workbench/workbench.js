@@ -1,10 +1,12 @@
 import { Actions } from "./actions.js";
+import { AnnotatingIntents } from "./annotating_intents.js";
 import { Bar } from "./bar.js";
-import { directionItems } from "./directions.js";
+import { mapColours, startOptions } from "./display.js";
 import { element } from "./dom.js";
 import { fetched, fetchedDialog } from "./fetched.js";
 import { Hints } from "./hints.js";
 import { IdentityActions } from "./identity_actions.js";
+import { KeyActions } from "./key_actions.js";
 import { nameKeys } from "./key_titles.js";
 import { Keyboard } from "./keyboard.js";
 import { useKeys } from "./keys.js";
@@ -14,7 +16,9 @@ import { Notices } from "./notices.js";
 import { panelTools } from "./panel_tools.js";
 import { Panes } from "./panes.js";
 import { Paths } from "./paths.js";
+import { PeopleActions } from "./people_actions.js";
 import { PeoplePanel } from "./people_panel.js";
+import { placingParts } from "./placing.js";
 import { Playback } from "./playback.js";
 import { Pointer } from "./pointer.js";
 import { Round } from "./round.js";
@@ -38,44 +42,62 @@ import { WarningsPanel } from "./warnings_panel.js";
 export async function buildWorkbench(root, session, { mode, home }) {
   const { scene, store, images, activity } = session;
   const settings = new Settings();
-  const panes = new Panes({ scene, store, images, settings, options: startOptions() });
-  panes.addExtra((pane) => directionItems(panes, pane));
+  const panes = new Panes({ scene, store, images, options: startOptions() });
   settings.on("change", () => panes.markPeople(true));
   const notices = new Notices();
   const finishing = fetchedDialog(notices, import.meta.resolve("./finish.js"));
   const finish = async () => (await finishing())?.finishAssignment({ ...session, walk, notices, home });
   const walk = new Walk({ ...session, notices, finish });
-  const actions = new Actions({ ...session, settings, panes, notices, walk });
-  const identity = new IdentityActions({ ...session, panes, notices, guard: actions.guard });
-  actions.use(identity.table());
-  actions.use(new UndoActions({ ...session, notices, guard: actions.guard }).table());
+  const page = { settings, panes, notices, walk };
+  const placing = placingParts(session, page);
+  const { guard, heads, ghost } = placing;
   const playback = new Playback({ ...session, walk, settings });
-  actions.use(new TimeActions({ ...session, settings, panes, notices, guard: actions.guard, walk, playback }).table());
-  actions.use(new Round({ store, panes, notices, walk, actions }).table());
-  new Paths(panes, settings);
+  const actions = new Actions();
   const perform = (id, event) => {
     activity.note(store.current);
     if (id !== "play") playback.stop();
     actions.perform(id, event);
   };
   const bar = new Bar({ ...session, panes, perform, home, signIn: signInAddress(mode, home) });
-  const panel = new PeoplePanel({ scene, store, select: (person) => actions.select(person) });
+  const select = (person) => {
+    ghost.hide();
+    store.select(person);
+  };
+  const panel = new PeoplePanel({ scene, store, select });
   const stage = element("main", { className: "stage" });
   const timeline = new Timeline({ ...session, walk, playback, perform });
   root.replaceChildren(bar.element, stage, timeline.element, notices.element);
-  actions.pointer = new Pointer(panes, actions);
-  connectKeyboard(actions, bar, perform, settings);
   const layout = new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
-  chooseViews(root, actions, { panes, layout, settings, notices });
+  const views = new Views({ panes, layout, settings, notices });
+  const identity = new IdentityActions({ ...session, panes, notices, guard });
+  fillTable(actions, session, page, { ...placing, select, playback, identity, views, setControls: connectKeyboard(bar, perform, settings) });
+  actions.use(chooseViews(root, views, page));
+  new Paths(panes, settings);
   showFilmstrip(timeline, notices, { ...session, walk, panes, settings });
-  if (mode !== "tutorial") {
-    const list = warn(session, { settings, panes, notices, walk, actions, identity });
-    panel.element.append(panelTools(store, perform, actions.heads), list, new Hints({ store, panes, settings }).element);
-    actions.use(frameHistory(panel, { ...session, panes, notices, guard: actions.guard }));
-  }
+  if (mode !== "tutorial") addForWork(panel, session, page, { actions, perform, identity, heads, guard });
   watch(session, panes, notices);
   walk.carryInto(store.current);
   if (mode === "tutorial") await startTutorial(panel, { ...session, panes, walk, home });
+}
+
+/** What the tutorial does without: buttons about the person, warnings, hints, the frame's history. */
+function addForWork(panel, session, page, { actions, perform, identity, heads, guard }) {
+  const list = warn(session, { ...page, actions, identity });
+  panel.element.append(panelTools(session.store, perform, heads), list, new Hints({ ...page, store: session.store }).element);
+  actions.use(frameHistory(panel, { ...session, ...page, guard }));
+}
+
+/** What keys, buttons and the pointer do. Going one by one means something else by some of the keys, so it comes last. */
+function fillTable(actions, session, page, parts) {
+  const { panes } = page;
+  const intents = new AnnotatingIntents({ ...session, ...parts, enlarge: (pane) => parts.views.enlarge(pane) });
+  const pointer = new Pointer(panes, intents);
+  const people = new PeopleActions({ ...session, ...page, ...parts });
+  const keys = new KeyActions({ ...session, ...page, ...parts, intents, pointer });
+  for (const topic of [parts.moving, parts.sizes, people, keys, parts.identity]) actions.use(topic.table());
+  actions.use(new UndoActions({ ...session, ...page, ...parts }).table());
+  actions.use(new TimeActions({ ...session, ...page, ...parts }).table());
+  actions.use(new Round({ ...session, ...page, ...parts, intents, people, escape: () => keys.escape() }).table());
 }
 
 async function startTutorial(panel, parts) {
@@ -110,33 +132,31 @@ function frameHistory(panel, parts) {
   return { history: async () => (await history())?.toggle() };
 }
 
-/** F6 gives Tab, Space and Enter to the buttons; Escape takes them back. */
-function connectKeyboard(actions, bar, perform, settings) {
+/** F6 gives Tab, Space and Enter to the buttons; Escape takes them back. @returns {(on: boolean) => void} does so */
+function connectKeyboard(bar, perform, settings) {
   const keyboard = new Keyboard(perform, (controls) => bar.showMode(controls));
   settings.watch("keys", (keys) => {
     useKeys(keys);
     keyboard.learn();
     nameKeys(document);
   });
-  actions.setControls = (on) => {
+  return (on) => {
     keyboard.setControls(on);
     if (on) bar.element.querySelector("a, button").focus();
     else document.activeElement?.blur();
   };
 }
 
-/** What is seen and how, as it was chosen last. */
-function chooseViews(root, actions, { panes, layout, settings, notices }) {
-  const views = new Views({ panes, layout, settings, notices });
+/** What is seen and how, as it was chosen last. @returns {object} rows for the table of actions */
+function chooseViews(root, views, { panes, settings, notices }) {
   const make = ({ ViewsMenu }) => {
     const made = new ViewsMenu(views);
     root.append(made.element);
     return made;
   };
   const menu = fetched(notices, import.meta.resolve("./views_menu.js"), make);
-  actions.views = views;
-  actions.use({ ...views.table(), views: async () => (await menu())?.toggle() });
   for (const name of DISPLAYED) settings.watch(name, (value) => panes.set(name, value));
+  return { ...views.table(), views: async () => (await menu())?.toggle() };
 }
 
 /** @returns {HTMLElement} the list of warnings; the same warnings are drawn in the panes */
@@ -190,21 +210,6 @@ function askAboutConflicts({ saver, scene, store }, notices) {
   saver.conflicts().forEach(askInTurn);
   saver.on("conflict", askInTurn);
   return () => waiting.splice(0).forEach(askInTurn);
-}
-
-function startOptions() {
-  return { outline: false, directions: false, grid: false, labelOpacity: 1, boxOpacity: 1, mapColours: mapColours() };
-}
-
-function mapColours() {
-  const style = getComputedStyle(document.documentElement);
-  const value = (name) => style.getPropertyValue(name).trim();
-  return {
-    ground: value("--map-ground"),
-    weak: value("--map-weak"),
-    strong: value("--map-strong"),
-    cameras: value("--map-cameras").split(","),
-  };
 }
 
 /** Where signing in again leads back to: staff log in, workers have their own page. */

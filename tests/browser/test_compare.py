@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,12 @@ from django.test import Client
 from playwright.sync_api import Page, expect
 from pytest_django.live_server_helper import LiveServer
 
+from gtm_hit.geometry.cylinder import FootRule, rectangles
 from gtm_hit.models import Layer
-from tests.browser.street import GRID, Street, make_street
+from tests.browser.bench import TWO_FRAMES, pane_of, place_on_page, well_seen
+from tests.browser.street import CYLINDER, GRID, Street, make_street
+from tests.browser.street import cameras as street_cameras
+from tests.browser.test_workbench_touch import touch
 from tests.work_scene import make_layer, row, save
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
@@ -156,3 +161,118 @@ def test_a_figure_is_saved_as_a_picture(
     saved = download.value
     assert saved.suggested_filename == "street-truth-coverage.png"
     assert Path(saved.path()).read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
+
+
+def place_of(street: Street, page: Page, view: int, person: int) -> tuple[float, float]:
+    """A pixel on the truth's box of somebody in the last frame, away from the foot."""
+    x, y = place_on_page(page, view, int(street.truth[2][person]))
+    return x, y - 12
+
+
+def seen_person(street: Street) -> tuple[int, int]:
+    """A view and somebody of the last frame who is seen well there and was found."""
+    return well_seen(street, 2)
+
+
+def zoom_of(page: Page, view: int) -> float:
+    page.evaluate(TWO_FRAMES)
+    return float(pane_of(page, view).get_attribute("data-zoom") or 0)
+
+
+def test_a_double_click_makes_a_view_large_and_alike_again(viewer: Page) -> None:
+    pane = pane_of(viewer, 1)
+    before = pane.bounding_box()
+    pane.dblclick(position={"x": 40, "y": 40})
+    expect(pane).to_have_class(re.compile(r"\blarge\b"))
+    after = pane.bounding_box()
+    assert before and after and after["width"] > 1.5 * before["width"]
+    pane.dblclick(position={"x": 40, "y": 40})
+    expect(pane).not_to_have_class(re.compile(r"\blarge\b"))
+
+
+@pytest.mark.parametrize("key", ["Alt", "Control"])
+def test_a_click_that_would_add_a_sighting_changes_nothing(viewer: Page, street: Street, key: str) -> None:
+    viewer.locator(".marks li").first.click()
+    chosen = viewer.locator('.marks li[aria-selected="true"]')
+    expect(chosen).to_have_count(1)
+    viewer.keyboard.down(key)
+    pane_of(viewer, 0).click(position={"x": 60, "y": 60})
+    viewer.keyboard.up(key)
+    expect(chosen).to_have_count(1)
+
+
+def test_a_drag_that_begins_on_a_person_moves_the_zoomed_picture(viewer: Page, street: Street) -> None:
+    view, person = seen_person(street)
+    expect(viewer.locator(".marks li")).to_have_count(6)
+    x, y = place_of(street, viewer, view, person)
+    viewer.mouse.move(x, y)
+    viewer.mouse.wheel(0, -400)
+    assert zoom_of(viewer, view) > 1.5
+    before = picture_of(viewer, view)
+    viewer.mouse.down()
+    viewer.mouse.move(x + 30, y + 20, steps=4)
+    viewer.mouse.up()
+    viewer.evaluate(TWO_FRAMES)
+    assert picture_of(viewer, view) != before
+    assert kinds(viewer) == [2, 1, 0, 3]
+
+
+def test_no_cursor_promises_that_people_can_be_moved(viewer: Page, street: Street) -> None:
+    view, person = seen_person(street)
+    expect(viewer.locator(".marks li")).to_have_count(6)
+    viewer.mouse.move(*place_of(street, viewer, view, person))
+    viewer.evaluate(TWO_FRAMES)
+    assert not pane_of(viewer, view).get_attribute("data-grip")
+
+
+def test_a_right_click_moves_nobody(viewer: Page, street: Street) -> None:
+    viewer.locator(".marks li").first.click()
+    pane_of(viewer, 0).click(position={"x": 60, "y": 60}, button="right")
+    expect(viewer.locator('.marks li[aria-selected="true"]')).to_have_count(1)
+    assert kinds(viewer) == [2, 1, 0, 3]
+
+
+def test_two_fingers_zoom_a_view(viewer: Page) -> None:
+    bounds = pane_of(viewer, 0).bounding_box()
+    assert bounds is not None
+    x, y = bounds["x"] + bounds["width"] / 2, bounds["y"] + bounds["height"] / 2
+    session = viewer.context.new_cdp_session(viewer)
+    session.send("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
+    touch(session, *[[(x - reach, y), (x + reach, y)] for reach in (20, 30, 40, 50, 60)])
+    assert zoom_of(viewer, 0) > 1.5
+
+
+def test_people_who_were_found_are_fainter_than_the_one_who_is_chosen(viewer: Page, street: Street) -> None:
+    viewer.keyboard.press("n")
+    viewer.keyboard.press("n")
+    expect(viewer.locator('.marks li[data-kind="matched"]')).to_have_count(5)
+    found = boxes_alpha(viewer, street)
+    assert 0 < found < 200
+
+
+def boxes_alpha(page: Page, street: Street) -> int:
+    """How much of the picture a matched person's box covers, 0 to 255, at the middle of its left edge."""
+    page.evaluate(TWO_FRAMES)
+    view, person = well_seen(street, 0)
+    camera = street_cameras()[view]
+    boxes, _ = rectangles(camera, GRID, CYLINDER, FootRule.CORNERS, np.array([street.truth[0][person]]))
+    xmin, ymin, _xmax, ymax = (float(one) for one in boxes[0])
+    return int(
+        pane_of(page, view)
+        .locator(".pane-marks")
+        .evaluate(
+            """(canvas, [x, y, width, height]) => {
+                const scale = Math.min(canvas.width / width, canvas.height / height);
+                const left = (canvas.width - width * scale) / 2 + x * scale;
+                const top = (canvas.height - height * scale) / 2 + y * scale;
+                const { data } = canvas.getContext("2d").getImageData(left - 2, top, 4, 1);
+                return Math.max(data[3], data[7], data[11], data[15]);
+            }""",
+            [xmin, (ymin + ymax) / 2, camera.width, camera.height],
+        )
+    )
+
+
+def picture_of(page: Page, view: int) -> str:
+    canvas = pane_of(page, view).locator(".pane-picture")
+    return str(canvas.evaluate("canvas => canvas.toDataURL()"))

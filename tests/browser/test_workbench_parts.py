@@ -56,7 +56,7 @@ PARTS = [
     ("?", "help", "dialog:modal"),
     (",", "settings_dialog", "dialog:modal"),
     ("r", "identity_dialog", "dialog:modal"),
-    ("u", "views_menu", ".views-menu:popover-open"),
+    ("u", "views_menu", ".views-menu:not([hidden])"),
     ("m", "filmstrip", ".filmstrip"),
     ("Shift+h", "frame_history", ".frame-history"),
 ]

@@ -14,7 +14,7 @@ from playwright.sync_api import Page, expect
 from pytest_django.live_server_helper import LiveServer
 
 from gtm_hit.geometry.camera import project
-from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
+from gtm_hit.geometry.cylinder import HEIGHTS, RADII, Cylinder, FootRule, rectangles
 from gtm_hit.models import Annotation, Frame, Layer
 from tests.browser.bench import Bench, best_view, metres_apart, well_seen
 from tests.browser.street import CYLINDER, FRAME_STEP, GRID, annotate, cameras, make_street
@@ -375,3 +375,22 @@ def test_a_height_reaches_frames_of_a_long_layer_that_were_not_loaded_yet(
     page.keyboard.press("s")
     expect(page.get_by_text("Everything is saved").first).to_be_attached()
     assert set(Annotation.objects.filter(layer=layer).values_list("height", flat=True)) == {1.82}
+
+
+@pytest.mark.parametrize(("before", "keys", "after"), [(2.8, 1, 2.82), (3.0, 2, 3.0)], ids=["2.8 m", "3 m"])
+def test_taller_never_makes_a_very_tall_person_smaller(
+    bench: Callable[..., Bench], before: float, keys: int, after: float
+) -> None:
+    opened = bench(frames=1)
+    Annotation.objects.filter(layer=opened.assignment.layer, person=1).update(height=before)
+    opened.open()
+    opened.press("Tab", *["PageUp"] * keys)
+    expect(opened.page.locator(".notice").last).to_contain_text(" m tall")
+    assert opened.stored()[0].height == pytest.approx(after)
+
+
+def test_the_sizes_a_person_may_have_are_the_servers(bench: Callable[..., Bench]) -> None:
+    opened = bench(frames=1)
+    with opened.page.expect_response("**/scene/") as answer:
+        opened.open()
+    assert answer.value.json()["sizes"] == {"height": list(HEIGHTS), "radius": list(RADII)}

@@ -3,6 +3,7 @@ import { element } from "../../workbench/dom.js";
 import { Images } from "../../workbench/images.js";
 import { gettext } from "../../workbench/messages.js";
 import { Notices } from "../../workbench/notices.js";
+import { problemWords } from "../../workbench/failure_words.js";
 import { Scene } from "../../workbench/scene.js";
 import { CompareStore } from "./store.js";
 import { buildViewer } from "./viewer.js";
@@ -21,7 +22,7 @@ try {
       "div",
       { className: "start-problem", role: "alert" },
       element("h1", {}, gettext("The comparison could not be shown")),
-      element("p", {}, error.message),
+      element("p", {}, problemWords(error)),
       element("button", { type: "button", className: "main", onclick: () => window.location.reload() }, gettext("Try again")),
       element("a", { href: home }, gettext("Back")),
     ),
@@ -31,13 +32,13 @@ try {
 async function start() {
   const api = new Api({ base, token: "", mode: "layer", csrf: "" });
   const scene = new Scene(await api.scene());
-  const images = new Images(api, scene.frames);
+  const images = new Images(api, scene);
   const store = new CompareStore(frames);
   if (window.location.hash) store.open(Number(window.location.hash.slice(1)));
   const notices = new Notices();
   store.on("frame", () => {
     window.history.replaceState(null, "", `#${store.current}`);
-    look(store, images).catch((error) => notices.say(error.message));
+    look(store, images).catch((error) => notices.say(problemWords(error)));
   });
   buildViewer(root, { store, scene, images, names: { truth, found }, home });
   root.append(notices.element);

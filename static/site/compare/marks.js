@@ -14,6 +14,8 @@ export const KINDS = {
   matched: { sign: "○", words: () => gettext("matched"), look: { colour: WHITE, width: 1, dash: [] } },
 };
 
+const PLAIN = { box: 1, label: 1 };
+const FAINT = { box: 0.6, label: 0.6 }; // who was found asks for no look
 const FOOT = 3.5; // CSS pixels
 const AROUND = 22; // room a sign with its ring needs around a foot
 
@@ -35,7 +37,7 @@ export function markItem(pane, mark, selected, labels) {
     look: `${mark.kind} ${selected} ${labels}`,
     bounds: boundsOf(box, feet, label),
     draw: (ctx) => {
-      if (view.index !== null) drawBox(ctx, box, look, label, mark.kind === "matched" && !selected ? 0.75 : 1);
+      if (view.index !== null) drawBox(ctx, box, look, label, mark.kind === "matched" && !selected ? FAINT : PLAIN);
       else if (label) drawLabel(ctx, (box.xmin + box.xmax) / 2, box.ymin - 2, label, look);
       drawFeet(ctx, mark, feet, look);
     },

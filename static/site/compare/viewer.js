@@ -1,25 +1,21 @@
+import { mapColours, startOptions } from "../../workbench/display.js";
 import { element, setText } from "../../workbench/dom.js";
+import { chord } from "../../workbench/key_press.js";
 import { Layout } from "../../workbench/layout.js";
 import { gettext } from "../../workbench/messages.js";
 import { Panes } from "../../workbench/panes.js";
 import { Pointer } from "../../workbench/pointer.js";
+import { CompareIntents } from "./intents.js";
 import { markItem } from "./marks.js";
 import { MarksPanel } from "./panel.js";
 
-/** The workbench's panes, with the marks of a comparison instead of one layer's people. */
-class ComparePanes extends Panes {
-  _model() {
-    return Object.defineProperty(super._model(), "people", { value: new Map() });
-  }
-}
-
 /**
- * Builds the page inside `root`.
+ * Builds the page inside `root`: the workbench's panes, with the marks of a comparison instead of people.
  * @param {{store, scene, images, names: {truth: string, found: string}, home: string}} parts
  */
 export function buildViewer(root, { store, scene, images, names, home }) {
-  const panes = new ComparePanes({ scene, store, images, options: startOptions() });
-  panes.addExtra((pane) => items(pane, store, panes.options.labels));
+  const panes = new Panes({ scene, store, images, options: startOptions(), people: () => new Map() });
+  panes.addExtra((pane) => items(pane, store, panes.options.labelOpacity > 0));
   store.on("marks", () => panes.markPeople());
   const choose = (key) => {
     store.select(key);
@@ -31,14 +27,14 @@ export function buildViewer(root, { store, scene, images, names, home }) {
     ArrowRight: () => store.open(store.neighbour(1, store.inTime)),
     ArrowLeft: () => store.open(store.neighbour(-1, store.inTime)),
     Tab: () => choose(following(store)),
-    l: () => panes.set("labels", !panes.options.labels),
+    l: () => panes.set("labelOpacity", panes.options.labelOpacity ? 0 : 1),
     Escape: () => choose(null),
   };
   const panel = new MarksPanel(store, names, choose);
   const stage = element("main", { className: "stage" });
   root.replaceChildren(bar(store, actions, names, home), stage);
-  new Pointer(panes, pointerIntents(store));
-  new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
+  const layout = new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
+  new Pointer(panes, new CompareIntents({ store, enlarge: (pane) => layout.setLarge(layout.large === pane ? null : pane) }));
   document.addEventListener("keydown", (event) => onKey(event, actions));
   document.documentElement.addEventListener("themechange", () => panes.set("mapColours", mapColours()));
   window.addEventListener("focus", () => images.retryAll());
@@ -58,16 +54,9 @@ function following(store) {
   return keys.length ? keys[(keys.indexOf(store.selection) + 1) % keys.length] : null;
 }
 
-/** A click chooses, a click on nobody lets go; nothing here can be moved. */
-function pointerIntents(store) {
-  const nothing = () => {};
-  return { place: () => store.select(null), select: (key) => store.select(key), moveHere: nothing, hover: nothing, leave: nothing };
-}
-
 function onKey(event, actions) {
-  if (event.ctrlKey || event.altKey || event.metaKey) return;
-  const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-  if (event.shiftKey || !(name in actions)) return;
+  const name = chord(event);
+  if (!(name in actions)) return;
   event.preventDefault();
   actions[name]();
 }
@@ -94,22 +83,7 @@ function bar(store, actions, names, home) {
     place,
     button("n", gettext("Next")),
     element("span", { className: "gap" }),
-    element("span", { className: "left" }, gettext("← → in time · Tab next person · Esc whole view · wheel zooms")),
+    element("span", { className: "left" }, gettext("← → in time · Tab next person · Esc whole view · wheel zooms · double click: one view large")),
     button("l", gettext("Labels")),
   );
-}
-
-function startOptions() {
-  return { outline: false, directions: false, grid: false, labels: true, opacity: 1, mapColours: mapColours() };
-}
-
-function mapColours() {
-  const style = getComputedStyle(document.documentElement);
-  const value = (name) => style.getPropertyValue(name).trim();
-  return {
-    ground: value("--map-ground"),
-    weak: value("--map-weak"),
-    strong: value("--map-strong"),
-    cameras: value("--map-cameras").split(","),
-  };
 }
