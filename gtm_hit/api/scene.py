@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
-from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, LayerFrame
+from gtm_hit.models import Assignment, Dataset, Frame, Image, LayerFrame
+from gtm_hit.ops import grid_files
 from gtm_hit.ops.neighbours import Neighbours, neighbours
 
 
@@ -28,21 +29,10 @@ def dataset_part(dataset: Dataset) -> dict[str, Any]:
         },
         "cylinder": {"radius": dataset.cylinder_radius, "height": dataset.cylinder_height},
         "foot_rule": dataset.foot_rule,
-        "cameras": [camera_part(camera) for camera in dataset.cameras.order_by("index")],
-    }
-
-
-def camera_part(camera: Camera) -> dict[str, Any]:
-    calibrated = camera.calibrated
-    return {
-        "index": camera.index,
-        "name": camera.name,
-        "width": camera.width,
-        "height": camera.height,
-        "matrix": calibrated.matrix.tolist(),
-        "rotation": calibrated.rotation.tolist(),
-        "tvec": calibrated.tvec.tolist(),
-        "distortion": calibrated.distortion.tolist(),
+        "cameras": [
+            {**camera.as_json(), "grid": grid_url(grid_files.digest_of(dataset, camera))}
+            for camera in dataset.calibrated_cameras()
+        ],
     }
 
 
@@ -67,6 +57,10 @@ def head_part(head: LayerFrame) -> dict[str, Any]:
 
 def image_url(digest: str) -> str:
     return f"/api/v1/images/{digest}.jpg"
+
+
+def grid_url(digest: str) -> str:
+    return f"/api/v1/grids/{digest}.gz"
 
 
 def assignment_part(assignment: Assignment | None) -> dict[str, Any] | None:

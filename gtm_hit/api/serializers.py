@@ -155,6 +155,8 @@ class SceneCameraSerializer(serializers.Serializer[Any]):
     rotation = serializers.ListField(child=serializers.ListField(child=serializers.FloatField()))
     tvec = serializers.ListField(child=serializers.FloatField(), help_text="metres")
     distortion = serializers.ListField(child=serializers.FloatField())
+    model = serializers.CharField(help_text="pinhole or fisheye: what the numbers of distortion mean")
+    grid = serializers.CharField(help_text="address of its rectangles of the usual person, at all positions")
 
 
 class SceneSerializer(serializers.Serializer[Any]):

@@ -39,7 +39,7 @@ class CameraShape(serializers.ModelSerializer[Camera]):
 
     class Meta:
         model = Camera
-        fields = ["index", "name", "width", "height", "matrix", "rvec", "tvec", "distortion"]
+        fields = ["index", "name", "width", "height", "matrix", "rvec", "tvec", "distortion", "model"]
 
 
 class FrameShape(serializers.ModelSerializer[Frame]):

@@ -21,6 +21,7 @@ from gtm_hit.api import (
     work,
 )
 from gtm_hit.api.authentication import BearerAuthentication, StaffMay, StaffSession
+from gtm_hit.api.grids import GridView
 from gtm_hit.api.images import ImageView
 from gtm_hit.api.missing import MissingView
 from gtm_hit.api.submission import SubmitView
@@ -110,6 +111,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("layers/<int:layer>/from/<int:first>/", include(one_part)),
     path("tutorial/", include(learning)),
     re_path(r"^images/(?P<digest>[0-9a-f]{64})\.jpg$", ImageView.as_view()),
+    re_path(r"^grids/(?P<digest>[0-9a-f]{64})\.gz$", GridView.as_view()),
     path("schema/", SpectacularAPIView.as_view(**staff), name="schema"),
     path("docs/", SpectacularSwaggerView.as_view(url_name="schema", **staff), name="docs"),
     re_path("", MissingView.as_view()),

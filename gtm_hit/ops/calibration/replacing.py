@@ -69,7 +69,8 @@ def replace_calibration(dataset: Dataset, cameras: Sequence[Camera], seen: dict[
         for row, camera in zip(dataset.cameras.select_for_update(), cameras, strict=True):
             row.matrix, row.distortion = camera.matrix.tolist(), camera.distortion.tolist()
             row.rvec, row.tvec = camera.rvec.tolist(), camera.tvec.tolist()
-            row.save(update_fields=["matrix", "distortion", "rvec", "tvec"])
+            row.model = camera.model.value
+            row.save(update_fields=["matrix", "distortion", "rvec", "tvec", "model"])
         dataset.table_digest = seen["table_digest"]
         dataset.save(update_fields=["table_digest"])
 

@@ -15,6 +15,7 @@ from gtm_hit.formats.problems import FormatError, Problem, ProblemList
 from gtm_hit.geometry.camera import Camera as CalibratedCamera
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Dataset, Image, Layer, LayerFrame
+from gtm_hit.ops import grid_files
 from gtm_hit.ops.images import Derivatives
 from gtm_hit.ops.importing import rows
 from gtm_hit.ops.importing.annotations import ImportedFrame, compare_boxes, ignored_sizes, read_annotations
@@ -269,6 +270,7 @@ def _make_table(reading: Reading, progress: Progress, problems: ProblemList) -> 
         lambda done, total: progress("computing rectangles", done, total),
     )
     dataset.table_digest = table.digest
+    grid_files.make(dataset, table, cameras)
     blind = [camera.name for camera in cameras if not table.visible(camera.index).any()]
     if len(blind) == len(cameras):
         problems.add("calibrations", "no camera sees any position: grid, origin or --tvec-unit is wrong")
