@@ -43,7 +43,7 @@ def make(dataset: Dataset, rectangles: RectangleTable, cameras: list[Camera]) ->
     for camera in cameras:
         path = path_of(digest_of(dataset, camera))
         if not path.exists():
-            _write(path, encode(rectangles.boxes(camera.index), rectangles.grid))
+            _write(path, encode(rectangles.boxes(camera.index), camera, rectangles.grid))
 
 
 def _write(path: Path, data: bytes) -> None:

@@ -6,37 +6,39 @@ const EXCEPTION = 255;
 
 /**
  * @param {ArrayBuffer} buffer the unpacked file
- * @returns {{columns: number, rows: number, boxes: Int16Array}} `boxes`: xmin, ymin, xmax, ymax of position 0, then
- *   of position 1 …; all 0 where not visible
+ * @returns {{columns: number, rows: number, boxes: Int16Array, feet: Int16Array|null}} `boxes`: xmin, ymin, xmax, ymax
+ *   of position 0, then of position 1 …; `feet`: x and y in quarters of a pixel; all 0 where not visible
  */
 export function decodeGrid(buffer) {
   const magic = String.fromCharCode(...new Uint8Array(buffer, 0, Math.min(8, buffer.byteLength)));
   if (magic !== MAGIC || buffer.byteLength < HEAD) throw new TypeError("not a grid file");
-  const [columns, rows, visible, runCount, exceptionCount] = new Uint32Array(buffer, 8, 5);
+  const [columns, rows, visible, runCount, exceptionCount, count] = new Uint32Array(buffer, 8, 6);
   const planes = HEAD + 4 * (runCount + exceptionCount);
-  if (buffer.byteLength !== planes + 4 * visible) throw new TypeError("a grid file that is cut off");
+  if (buffer.byteLength !== planes + count * visible) throw new TypeError("a grid file that is cut off");
   const runs = new Uint32Array(buffer, HEAD, runCount);
   const exceptions = new Uint32Array(buffer, HEAD + 4 * runCount, exceptionCount);
   const boxes = new Int16Array(4 * columns * rows);
+  const feet = count === 6 ? new Int16Array(2 * columns * rows) : null;
   let exception = 0;
-  for (let side = 0; side < 4; side += 1) {
-    const plane = new Uint8Array(buffer, planes + side * visible, visible);
-    exception = fillSide(boxes, side, columns, runs, plane, exceptions, exception);
+  for (let number = 0; number < count; number += 1) {
+    const plane = new Uint8Array(buffer, planes + number * visible, visible);
+    const into = number < 4 ? { values: boxes, width: 4, number } : { values: feet, width: 2, number: number - 4 };
+    exception = fill(into, columns, runs, plane, exceptions, exception);
   }
-  return { columns, rows, boxes };
+  return { columns, rows, boxes, feet };
 }
 
-/** One side of all boxes; returns the next exception. */
-function fillSide(boxes, side, columns, runs, plane, exceptions, exception) {
-  const above = 4 * columns; // where not visible, and before the first row, there is nothing but 0
+/** Every `width`-th of the values, from `number` on, out of one plane; returns the next exception. */
+function fill({ values, width, number }, columns, runs, plane, exceptions, exception) {
+  const above = width * columns; // where not visible, and before the first row, there is nothing but 0
   let [position, at] = [0, 0];
   for (let run = 0; run < runs.length; position += runs[run], run += 1) {
     if (run % 2 === 0) continue; // not visible
     for (let one = position; one < position + runs[run]; one += 1, at += 1) {
-      const place = 4 * one + side;
-      const known = one > position && one % columns !== 0 ? boxes[place - 4] : (boxes[place - above] ?? 0);
+      const place = width * one + number;
+      const known = one > position && one % columns !== 0 ? values[place - width] : (values[place - above] ?? 0);
       const zigzag = plane[at] === EXCEPTION ? exceptions[exception++] : plane[at];
-      boxes[place] = known + ((zigzag >>> 1) ^ -(zigzag & 1));
+      values[place] = known + ((zigzag >>> 1) ^ -(zigzag & 1));
     }
   }
   return exception;

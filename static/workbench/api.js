@@ -60,13 +60,19 @@ export class Api {
 
   /** An image's bytes; `signal` gives up on views nobody looks at any more. */
   async blob(address, signal) {
-    const response = await this._fetch(address, { headers: this._headers(), signal });
+    const response = await this._fetch(address, { headers: this.headers(), signal });
     if (!response.ok) throw await errorOf(response);
     return response.blob();
   }
 
+  /** What says who is asking. */
+  headers() {
+    if (this._token) return { Authorization: `${this._scheme} ${this._token}` };
+    return this._csrf ? { "X-CSRFToken": this._csrf } : {};
+  }
+
   async _json(method, path, body, { keepalive = false } = {}) {
-    const headers = { ...this._headers(), Accept: "application/json" };
+    const headers = { ...this.headers(), Accept: "application/json" };
     if (body !== undefined) headers["Content-Type"] = "application/json";
     const response = await this._fetch(this.base + path, {
       method,
@@ -87,11 +93,6 @@ export class Api {
       if (error.name === "AbortError") throw error;
       throw new NetworkError(error.message);
     }
-  }
-
-  _headers() {
-    if (this._token) return { Authorization: `${this._scheme} ${this._token}` };
-    return this._csrf ? { "X-CSRFToken": this._csrf } : {};
   }
 }
 

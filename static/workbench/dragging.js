@@ -73,7 +73,7 @@ export class Dragging {
   _carry(drag, foot) {
     const ground = drag.pane.view.ground(foot);
     if (!ground) {
-      drag.words = [gettext("above the horizon")];
+      drag.words = [drag.pane.view.byTable ? gettext("no feet in the ground area") : gettext("above the horizon")];
       return;
     }
     const preview = landing(this._scene, this._store, drag.person, ground);

@@ -3,14 +3,18 @@ import { fetchParts } from "./fetched.js";
 import { gettext } from "./messages.js";
 import { openSession } from "./session.js";
 import { started } from "./start.js";
+import { fetchTables } from "./tables.js";
 import { buildWorkbench } from "./workbench.js";
 
 const { mode, home } = document.body.dataset;
 const root = document.getElementById("workbench");
 
 try {
-  await buildWorkbench(root, await openSession(await started), { mode, home });
+  const waiting = root.querySelector(".starting");
+  const session = await openSession(await started, (words) => (waiting.textContent = words));
+  await buildWorkbench(root, session, { mode, home });
   root.dataset.ready = "true";
+  fetchTables(session, session.store.current);
   document.addEventListener("keydown", fetchParts, { once: true });
   document.addEventListener("pointerdown", fetchParts, { once: true });
 } catch (error) {

@@ -10,14 +10,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from gtm_hit.geometry.cylinder import Cylinder, FootRule
+from gtm_hit.geometry.camera import project
+from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.geometry.grid import Grid
-from gtm_hit.geometry.grid_file import encode, grid_file_digest
+from gtm_hit.geometry.grid_file import encode, encode_values, grid_file_digest
 from gtm_hit.geometry.table import RectangleTable
 from tests.geometry.scenes import PERSON, WILDTRACK_GRID, wildtrack_cameras
+from tests.geometry.test_fisheye import CAMERA as FISHEYE
 
 SMALL = Grid(columns=5, rows=4, step=0.5, origin_x=0.0, origin_y=0.0)
-INGREDIENTS = (wildtrack_cameras()[0], WILDTRACK_GRID, PERSON, FootRule.CORNERS)
+CAMERAS = wildtrack_cameras()
+INGREDIENTS = (CAMERAS[0], WILDTRACK_GRID, PERSON, FootRule.CORNERS)
 MOST_BYTES = 6_000_000  # of WILDTRACK's seven cameras
 
 
@@ -25,13 +28,13 @@ def decoded(data: bytes) -> np.ndarray:
     """The format word by word, slowly."""
     raw = gzip.decompress(data)
     assert raw[:8] == b"GTMGRID1"
-    columns, rows, visible, run_count, exception_count, _ = struct.unpack("<6I", raw[8:32])
+    columns, rows, visible, run_count, exception_count, count = struct.unpack("<6I", raw[8:32])
     numbers = np.frombuffer(raw, "<u4", run_count + exception_count, 32).tolist()
     runs, exceptions = numbers[:run_count], iter(numbers[run_count:])
-    planes = np.frombuffer(raw, np.uint8, 4 * visible, 32 + 4 * len(numbers)).reshape(4, visible)
+    planes = np.frombuffer(raw, np.uint8, count * visible, 32 + 4 * len(numbers)).reshape(count, visible)
     seen = np.repeat(np.arange(run_count) % 2 == 1, runs)
     assert seen.size == columns * rows
-    boxes = np.zeros((seen.size, 4), int)
+    boxes = np.zeros((seen.size, count), int)
     for side, plane in enumerate(planes):
         for position, byte in zip(np.flatnonzero(seen), plane.tolist(), strict=True):
             zigzag = next(exceptions) if byte == 255 else byte
@@ -44,24 +47,34 @@ def decoded(data: bytes) -> np.ndarray:
 
 @st.composite
 def tables(draw: st.DrawFn) -> np.ndarray:
-    boxes = draw(arrays(np.int16, (SMALL.count, 4)))
-    boxes[:, 2] = np.maximum(boxes[:, 2], 2)  # a visible box has an xmax above 1
-    boxes[draw(arrays(np.bool_, SMALL.count))] = 0
-    return boxes
+    values = draw(arrays(np.int16, (SMALL.count, draw(st.sampled_from((4, 6))))))
+    values[:, 2] = np.maximum(values[:, 2], 2)  # a visible box has an xmax above 1
+    values[draw(arrays(np.bool_, SMALL.count))] = 0
+    return values
 
 
 @given(tables())
-def test_any_boxes_come_back_as_they_were(boxes: np.ndarray) -> None:
-    np.testing.assert_array_equal(decoded(encode(boxes, SMALL)), boxes)
+def test_any_numbers_come_back_as_they_were(values: np.ndarray) -> None:
+    np.testing.assert_array_equal(decoded(encode_values(values, values[:, 2] > 0, SMALL)), values)
+
+
+def test_a_fisheyes_file_tells_the_feet_too(wildtrack_table: RectangleTable) -> None:
+    grid = Grid(columns=48, rows=144, step=0.25, origin_x=-3.0, origin_y=-9.0)
+    boxes, visible = rectangles(FISHEYE, grid, PERSON, FootRule.CORNERS, np.arange(grid.count))
+    values = decoded(encode(boxes, FISHEYE, grid))
+    np.testing.assert_array_equal(values[:, :4], boxes)
+    feet = project(FISHEYE, np.column_stack((grid.metres(np.flatnonzero(visible)), np.zeros(visible.sum()))))
+    np.testing.assert_allclose(values[visible, 4:] / 4, feet, atol=0.1251)
+    assert not values[~visible].any()
 
 
 def test_the_same_boxes_give_the_same_bytes(wildtrack_table: RectangleTable) -> None:
     boxes = wildtrack_table.boxes(3)
-    assert encode(boxes, WILDTRACK_GRID) == encode(boxes.copy(), WILDTRACK_GRID)
+    assert encode(boxes, CAMERAS[3], WILDTRACK_GRID) == encode(boxes.copy(), CAMERAS[3], WILDTRACK_GRID)
 
 
 def test_the_files_of_wildtracks_seven_cameras_are_small(wildtrack_table: RectangleTable) -> None:
-    sizes = [len(encode(wildtrack_table.boxes(index), WILDTRACK_GRID)) for index in range(7)]
+    sizes = [len(encode(wildtrack_table.boxes(one.index), one, WILDTRACK_GRID)) for one in CAMERAS]
     assert sum(sizes) < MOST_BYTES
 
 
