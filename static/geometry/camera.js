@@ -75,7 +75,7 @@ export class Camera {
 /**
  * Pixel of a world point in metres; null behind the camera and where the lens model folds back.
  *
- * @param {Camera|import("./table_camera.js").TableCamera} camera
+ * @param {Camera} camera or a TableCamera
  * @returns {{x: number, y: number}|null}
  */
 export function project(camera, x, y, z = 0) {

@@ -151,6 +151,28 @@ def test_a_click_in_a_fisheye_view_finds_the_place_by_the_nearest_feet(
     assert np.quantile(off / np.maximum(per_pixel, 0.025), 0.99) < 1.5  # pixels, or positions
 
 
+def test_the_nearest_feet_are_those_a_search_of_all_finds(
+    module_page: Page, fisheye_table: RectangleTable
+) -> None:
+    serve(module_page, [encode(fisheye_table.boxes(0), FISHEYE, WILDTRACK_GRID)])
+    clicks = np.random.default_rng(8).uniform((0, 0), (1280, 720), (40, 2)).tolist()
+    code = """
+        const { footX, footY, isVisible, nearestFoot } = await import("/static/geometry/feet.js");
+        const { _feet: table, _index: index } = scene.cameras[0];
+        const apart = (one, [x, y]) => Math.hypot(footX(table, one) - x, footY(table, one) - y);
+        const inPicture = (one) => footX(table, one) >= 0 && footY(table, one) >= 0 &&
+            footX(table, one) < 1280 && footY(table, one) < 720;
+        const all = [...Array(scene.grid.count).keys()]
+            .filter((one) => isVisible(table, one) && inPicture(one));
+        return given.clicks.map((click) => {
+          const found = nearestFoot(table, index, ...click, 24);
+          const best = all.reduce((least, one) => Math.min(least, apart(one, click)), Infinity);
+          return found === null ? best >= 24 : apart(found, click) === best;
+        });
+    """
+    assert run(module_page, [FISHEYE], code, clicks=clicks) == [True] * 40
+
+
 def test_ground_points_have_their_pixel_in_a_fisheye_view(
     module_page: Page, fisheye_table: RectangleTable
 ) -> None:
