@@ -24,6 +24,7 @@ from gtm_hit.api.authentication import BearerAuthentication, StaffMay, StaffSess
 from gtm_hit.api.grids import GridView
 from gtm_hit.api.images import ImageView
 from gtm_hit.api.missing import MissingView
+from gtm_hit.api.rectangles import AssignmentRectangles, LayerRectangles
 from gtm_hit.api.submission import SubmitView
 
 staff: dict[str, Any] = {
@@ -35,6 +36,7 @@ assignment = [
     path("frames/", frames.AssignmentFrames.as_view()),
     path("frames/<int:number>/", frames.AssignmentFrame.as_view()),
     path("frames/<int:number>/history/", frames.AssignmentHistory.as_view()),
+    path("rectangles/", AssignmentRectangles.as_view()),
     path("submit/", SubmitView.as_view()),
 ]
 layer = [
@@ -42,6 +44,7 @@ layer = [
     path("frames/", frames.LayerFrames.as_view()),
     path("frames/<int:number>/", frames.LayerFrameView.as_view()),
     path("frames/<int:number>/history/", frames.LayerHistory.as_view()),
+    path("rectangles/", LayerRectangles.as_view()),
 ]
 # The same for a part of a long layer: the workbench opens no more of it.
 one_part = [
@@ -49,6 +52,7 @@ one_part = [
     path("frames/", frames.LayerFrames.as_view(schema=None)),
     path("frames/<int:number>/", frames.LayerFrameView.as_view(schema=None)),
     path("frames/<int:number>/history/", frames.LayerHistory.as_view(schema=None)),
+    path("rectangles/", LayerRectangles.as_view(schema=None)),
 ]
 learning = [
     path("scene/", tutorial.TutorialScene.as_view()),

@@ -46,6 +46,11 @@ export class Api {
     return this._json("PUT", `frames/${number}/`, body, { keepalive });
   }
 
+  /** Boxes of people {position, height, radius}, by camera. */
+  rectangles(people) {
+    return this._json("POST", "rectangles/", { people });
+  }
+
   submit() {
     return this._json("POST", "submit/", {});
   }

@@ -23,6 +23,7 @@ export class Scene {
     this.footRule = json.foot_rule;
     this.neighbours = readNeighbours(json.neighbours);
     this._rectangles = new WeakMap();
+    this.ownSizes = null;
   }
 
   /** Rectangles of one annotation in all views, `null` where not visible; computed once per annotation. */
@@ -40,8 +41,14 @@ export class Scene {
     const [camera, boxes] = [this.cameras[index], this._tables[index]];
     const usual = (annotation.height ?? annotation.radius ?? null) === null;
     if (boxes && usual) return rectangleIn(boxes, annotation.position);
-    if (camera.byTable) return null;
+    if (camera.byTable) return this.ownSizes?.rectangle(index, annotation) ?? null;
     return rectangle(camera, this.grid, this.cylinderOf(annotation), this.footRule, annotation.position);
+  }
+
+  /** @param {import("./own_sizes.js").OwnSizes} ownSizes what the tables do not hold */
+  askFor(ownSizes) {
+    this.ownSizes = ownSizes;
+    ownSizes.on("change", () => (this._rectangles = new WeakMap()));
   }
 
   /** Cameras whose table is not here, as the server describes them. */

@@ -25,7 +25,10 @@ export async function openScene(api, answer, pictures, say) {
   const wanted = answer.cameras.filter(({ model = "pinhole" }) => !MODELS.includes(model));
   if (!wanted.length) return new Scene(answer);
   await pictures();
-  return new Scene(answer, await camerasByTable(api, answer, wanted, say));
+  const scene = new Scene(answer, await camerasByTable(api, answer, wanted, say));
+  const { OwnSizes } = await import("./own_sizes.js");
+  scene.askFor(new OwnSizes(api));
+  return scene;
 }
 
 /** @returns {Promise<Map<number, {camera: object, boxes: Int16Array}>>} by index */

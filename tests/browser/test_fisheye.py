@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from uuid import uuid4
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from gtm_hit.geometry.camera import CameraModel, project
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.models import Annotation, Assignment, Dataset
 from gtm_hit.ops import assignments, exporting, tokens, workers
+from gtm_hit.ops.annotations import save_frame
 from gtm_hit.ops.batches import make_batches
 from gtm_hit.ops.importing.dataset import import_dataset
 from tests import fisheye_folder
@@ -195,6 +197,28 @@ def test_nobody_gets_a_size_that_a_view_could_not_show(opened: Page) -> None:
     opened.keyboard.press("PageUp")
     expect(opened.locator(".notices")).to_contain_text("does not know the lens of C1")
     assert [one.height for one in saved(opened)] == [None]
+
+
+def test_somebody_who_came_with_a_size_of_their_own_is_drawn_with_it(
+    page: Page, live_server: LiveServer, assignment: Assignment, dataset: Dataset
+) -> None:
+    position = clear_positions(1)[0]
+    rows = [{"person": 1, "position": position, "state": "validated", "origin": "clicked"}]
+    sized = [{**row, "height": 2.4, "radius": None} for row in rows]
+    frame = dataset.frames.order_by("number")[0]
+    save_frame(assignment.layer, frame, assignment.worker, uuid4(), 0, sized)
+    asked: list[str] = []
+    page.on("request", lambda request: "/rectangles/" in request.url and asked.append(request.url))
+    go(page, live_server, assignment)
+    expect(page.locator("#workbench")).to_have_attribute("data-ready", "true")
+    page.wait_for_timeout(500)
+    box, _ = rectangles(WIDE, dataset.grid, Cylinder(0.16, 2.4), dataset.rule, [position])
+    usual, _ = rectangles(WIDE, dataset.grid, dataset.cylinder, dataset.rule, [position])
+    assert usual[0][1] - box[0][1] > 10
+    above = np.array([(box[0][0] + box[0][2]) / 2, box[0][1] + 5])  # over the head of somebody of usual size
+    page.mouse.click(*on_page(page, above))
+    expect(page.locator('.people li[aria-selected="true"] .number')).to_have_text("1")
+    assert len(asked) == 1
 
 
 def test_border_grid_and_arrows_are_drawn_by_the_table(opened: Page) -> None:
