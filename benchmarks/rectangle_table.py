@@ -1,4 +1,4 @@
-"""How long the rectangle table of the seven WILDTRACK cameras takes to build and to open.
+"""How long the rectangle table of the seven WILDTRACK cameras takes to build and to open, and its grid files.
 
 python -m benchmarks.rectangle_table
 """
@@ -18,6 +18,7 @@ import numpy as np
 from gtm_hit.formats.camera_json import load_cameras
 from gtm_hit.geometry.cylinder import Cylinder, FootRule
 from gtm_hit.geometry.grid import Grid
+from gtm_hit.geometry.grid_file import encode
 from gtm_hit.geometry.table import RectangleTable
 
 CAMERAS = Path(__file__).resolve().parent.parent / "fixtures" / "wildtrack_cameras.json"
@@ -64,6 +65,16 @@ def private_bytes(kinds: tuple[str, ...] = ("Private_Dirty", "Private_Clean")) -
     return sum(int(line.split()[1]) * 1024 for line in lines if line.startswith(kinds))
 
 
+def grid_files(table: RectangleTable) -> tuple[list[float], list[int]]:
+    """Seconds and bytes of each camera's grid file."""
+    seconds, sizes = [], []
+    for camera in load_cameras(CAMERAS):
+        start = time.perf_counter()
+        sizes.append(len(encode(table.boxes(camera.index), camera, GRID)))
+        seconds.append(time.perf_counter() - start)
+    return seconds, sizes
+
+
 def main() -> None:
     if sys.argv[1:2] == ["--open"]:
         measure_opening(Path(sys.argv[2]))
@@ -74,6 +85,7 @@ def main() -> None:
         table = RectangleTable.build(Path(folder), cameras, GRID, Cylinder(0.16, 1.80), FootRule.CORNERS)
         openings = [open_in_fresh_process(table.path) for _ in range(RUNS)]
         size = table.path.stat().st_size
+        seconds, sizes = grid_files(table)
     milliseconds, opened, used = (median(values) for values in zip(*openings, strict=True))
     cores = len(os.sched_getaffinity(0))
     print(f"rectangle table, 7 cameras × {GRID.count:,} positions, {size / 1e6:.1f} MB, {cores} cores")
@@ -81,6 +93,8 @@ def main() -> None:
     print(f"  open, first look-up      {milliseconds:6.2f} ms  (fresh process)")
     print(f"  private memory, opened   {opened:6.2f} MB")
     print(f"  after 1,000 look-ups     {used:6.2f} MB  (without clean pages of the file)")
+    print(f"  grid files, all          {sum(sizes) / 1e6:6.2f} MB  (largest {max(sizes) / 1e6:.2f})")
+    print(f"  written, all             {sum(seconds):6.2f} s   (slowest {max(seconds):.2f})")
 
 
 if __name__ == "__main__":

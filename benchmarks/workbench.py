@@ -33,6 +33,7 @@ SCREEN: ViewportSize = {"width": 1920, "height": 1080}
 KEYS = 120
 NO_MEANING = "F8"  # a key the workbench does not know
 WALK = 200  # frames
+HELD = 7 * 480 * 1440 * 8 / 1e6  # int16 boxes of seven views
 # A poor mobile line: every answer two seconds late.
 SLOW = {"offline": False, "latency": 2000, "downloadThroughput": 20_000, "uploadThroughput": 10_000}
 
@@ -73,6 +74,7 @@ ALL_VIEWS = """
   return panes.length && panes.every((pane) => pane.dataset.picture === "ready") && performance.now();
 }
 """
+DECODED = "performance.getEntriesByName('grid file').map(({duration}) => duration)"
 PROGRAM_BYTES = """
 () => performance.getEntriesByType("resource")
   .filter(({name}) => /\\.(js|css)$/.test(name))
@@ -198,6 +200,19 @@ def cold_start(browser: Browser, address: str) -> dict[str, float]:
         "all views, ms": median(complete),
         "script + style, kB": max(weights) / 1000,
     }
+
+
+def grid_files(browser: Browser, address: str) -> dict[str, float]:
+    """What the worker needs to unpack and decode one camera's table, and what the page then holds."""
+    taken: list[float] = []
+    for _ in range(5):
+        page = browser.new_context(viewport=SCREEN).new_page()
+        page.goto(address)
+        page.wait_for_selector("[data-ready]")
+        page.wait_for_function(f"() => {DECODED}.length === 7", timeout=60_000)
+        taken += page.evaluate(DECODED)
+        page.context.close()
+    return {"a camera decoded, median ms": median(taken), "slowest ms": max(taken), "boxes held, MB": HELD}
 
 
 def arrow_keys(browser: Browser, address: str) -> dict[str, float]:
@@ -352,6 +367,7 @@ def report(title: str, figures: dict[str, float]) -> None:
 # name on the command line → what is printed, which scene, what measures it
 PARTS: dict[str, tuple[str, str, Callable[[Browser, str], dict[str, float]]]] = {
     "cold": ("cold start", "usual", cold_start),
+    "grids": ("grid files, 7 views", "usual", grid_files),
     "keys": ("arrow keys, 24 people × 7 views", "usual", arrow_keys),
     "large": ("arrow keys, 60 people × 12 views", "large", arrow_keys),
     "slow": ("placing on a slow network", "usual", slow_network),

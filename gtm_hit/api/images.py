@@ -34,7 +34,9 @@ class MaySeePictures(BasePermission):
         return any(rule().has_permission(request, view) for rule in (HoldsAssignment, HoldsSeat, StaffMay))
 
 
-class ImageView(APIView):
+class ContentView(APIView):
+    """Files that are no JSON, under names that never get other bytes."""
+
     authentication_classes = [
         AssignmentAuthentication,
         WorkerAuthentication,
@@ -44,9 +46,17 @@ class ImageView(APIView):
     permission_classes = [MaySeePictures]
 
     def perform_content_negotiation(self, request: Request, force: bool = False) -> Any:
-        # Pictures are no JSON: a client that accepts pictures only is right here.
+        # A client that accepts pictures only is right here.
         return super().perform_content_negotiation(request, force=True)
 
+    def kept_for_ever(self, response: HttpResponseBase, etag: str) -> HttpResponseBase:
+        response["ETag"] = etag
+        response["Cache-Control"] = "private, max-age=31536000, immutable"
+        response["X-Content-Type-Options"] = "nosniff"
+        return response
+
+
+class ImageView(ContentView):
     @extend_schema(
         summary="A picture",
         parameters=[OpenApiParameter("digest", str, OpenApiParameter.PATH, description="SHA-256, 64 digits")],
@@ -64,9 +74,7 @@ class ImageView(APIView):
         # A name never gets other bytes, so a browser that has it needs no file opened here.
         response = get_conditional_response(request._request, etag=etag) or self.file(digest)
         if isinstance(response, FileResponse | HttpResponseNotModified):
-            response["ETag"] = etag
-            response["Cache-Control"] = "private, max-age=31536000, immutable"
-            response["X-Content-Type-Options"] = "nosniff"
+            return self.kept_for_ever(response, etag)
         return response
 
     def file(self, digest: str) -> HttpResponse | FileResponse:

@@ -11,6 +11,7 @@ from rest_framework import serializers
 
 from gtm_hit.geometry.cylinder import HEIGHTS, RADII
 from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, LayerFrame
+from gtm_hit.ops import grid_files
 from gtm_hit.ops.neighbours import Neighbours, neighbours
 
 
@@ -36,14 +37,15 @@ class CameraShape(serializers.ModelSerializer[Camera]):
 
     class Meta:
         model = Camera
-        fields = ["index", "name", "width", "height", "matrix", "rvec", "tvec", "distortion"]
+        fields = ["index", "name", "width", "height", "matrix", "rvec", "tvec", "distortion", "model"]
 
 
 class SceneCameraSerializer(CameraShape):
     rotation = serializers.ListField(child=serializers.ListField(child=serializers.FloatField()))
+    grid = serializers.CharField(help_text="address of its rectangles of the usual person, at all positions")
 
     class Meta(CameraShape.Meta):
-        fields = [*CameraShape.Meta.fields, "rotation"]
+        fields = [*CameraShape.Meta.fields, "rotation", "grid"]
 
 
 class SceneSerializer(serializers.Serializer[Any]):
@@ -86,7 +88,10 @@ def dataset_part(dataset: Dataset) -> dict[str, Any]:
         "cylinder": {"radius": dataset.cylinder_radius, "height": dataset.cylinder_height},
         "sizes": {"height": HEIGHTS, "radius": RADII},
         "foot_rule": dataset.foot_rule,
-        "cameras": [camera.as_json() for camera in dataset.calibrated_cameras()],
+        "cameras": [
+            {**camera.as_json(), "grid": grid_url(grid_files.digest_of(dataset, camera))}
+            for camera in dataset.calibrated_cameras()
+        ],
     }
 
 
@@ -111,6 +116,10 @@ def head_part(head: LayerFrame) -> dict[str, Any]:
 
 def image_url(digest: str) -> str:
     return f"{get_script_prefix()}api/v1/images/{digest}.jpg"
+
+
+def grid_url(digest: str) -> str:
+    return f"{get_script_prefix()}api/v1/grids/{digest}.gz"
 
 
 def assignment_part(assignment: Assignment | None) -> dict[str, Any] | None:

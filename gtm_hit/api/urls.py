@@ -23,9 +23,11 @@ from gtm_hit.api import (
 )
 from gtm_hit.api.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.docs import DocsView
+from gtm_hit.api.grids import GridView
 from gtm_hit.api.images import ImageView
 from gtm_hit.api.missing import MissingView
 from gtm_hit.api.places import IN_LAYER, layer_start_place
+from gtm_hit.api.rectangles import RectanglesView
 from gtm_hit.api.submission import SubmitView
 
 staff: dict[str, Any] = {
@@ -38,6 +40,7 @@ assignment = [
     path("frames/", gzip_page(frames.AssignmentFrames.as_view())),
     path("frames/<int:number>/", frames.FrameView.as_view()),
     path("frames/<int:number>/history/", frames.HistoryView.as_view()),
+    path("rectangles/", RectanglesView.as_view()),
     path("submit/", SubmitView.as_view()),
 ]
 START: dict[str, Any] = {**IN_LAYER, "find": layer_start_place}
@@ -46,6 +49,7 @@ layer = [
     path("frames/", gzip_page(frames.LayerFrames.as_view(**IN_LAYER))),
     path("frames/<int:number>/", frames.FrameView.as_view(**IN_LAYER)),
     path("frames/<int:number>/history/", frames.HistoryView.as_view(**IN_LAYER)),
+    path("rectangles/", RectanglesView.as_view(**IN_LAYER)),
 ]
 # The same for a part of a long layer: the workbench opens no more of it.
 one_part = [
@@ -53,6 +57,7 @@ one_part = [
     path("frames/", gzip_page(frames.LayerFrames.as_view(**IN_LAYER, schema=None))),
     path("frames/<int:number>/", frames.FrameView.as_view(**IN_LAYER, schema=None)),
     path("frames/<int:number>/history/", frames.HistoryView.as_view(**IN_LAYER, schema=None)),
+    path("rectangles/", RectanglesView.as_view(**IN_LAYER, schema=None)),
 ]
 learning = [
     path("scene/", gzip_page(tutorial.TutorialScene.as_view())),
@@ -117,6 +122,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("layers/<int:layer>/from/<int:first>/", include(one_part)),
     path("tutorial/", include(learning)),
     re_path(r"^images/(?P<digest>[0-9a-f]{64})\.jpg$", ImageView.as_view(), name="picture"),
+    re_path(r"^grids/(?P<digest>[0-9a-f]{64})\.gz$", GridView.as_view()),
     path("schema/", SpectacularAPIView.as_view(**staff), name="schema"),
     path("docs/", DocsView.as_view(url_name="schema", **staff), name="docs"),
     re_path("", MissingView.as_view()),

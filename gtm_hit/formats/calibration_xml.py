@@ -13,9 +13,11 @@ import numpy as np
 from gtm_hit.formats.files import read_source
 from gtm_hit.formats.opencv_storage import StoredNode, parse_storage
 from gtm_hit.formats.problems import ProblemList, shown
+from gtm_hit.geometry.camera import CameraModel
 
 MOST_BYTES = 1_000_000
 DISTORTION_COUNTS = (4, 5, 8, 12, 14)
+FISHEYE_COUNTS = (4,)
 
 # Names used in the field, compared without case and separators; the first one present wins.
 MATRIX_NAMES = ("cameramatrix", "k", "intrinsicmatrix", "intrinsics", "intrinsic", "mtx", "cameramat")
@@ -30,6 +32,9 @@ DISTORTION_NAMES = (
 )
 RVEC_NAMES = ("rvec", "rotationvector", "rvecs")
 ROTATION_NAMES = ("r", "rotationmatrix", "rotation", "rot", "rmat")
+FISHEYE_FLAGS = ("fisheyemodel", "usefisheye")  # as OpenCV's calibration program writes it: 1
+MODEL_NAMES = ("model", "cameramodel", "distortionmodel", "projectionmodel")
+FISHEYE_WORDS = ("fisheye", "equidistant")  # cv2.fisheye's model, and ROS's name for the same
 TVEC_NAMES = ("tvec", "translationvector", "translation", "t", "tvecs")
 
 _METRE = {"m": 1.0, "cm": 100.0, "mm": 1000.0}
@@ -47,11 +52,13 @@ class Intrinsic:
     """Camera matrix and lens of one camera.
 
     matrix : (3, 3) float64, pixels
-    distortion : (k,) float64 with k = 4, 5, 8, 12 or 14, in OpenCV's order; five zeros when the file has none
+    distortion : (k,) float64 with k = 4, 5, 8, 12 or 14, in OpenCV's order; zeros when the file has none
+    model : a fisheye has k = 4
     """
 
     matrix: np.ndarray
     distortion: np.ndarray
+    model: CameraModel = CameraModel.PINHOLE
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,17 +90,17 @@ def read_extrinsic(path: Path) -> Extrinsic:
 def parse_intrinsic(data: bytes, path: str) -> Intrinsic:
     """Camera matrix and distortion of an XML or YAML file; `path` is what problems are reported under.
 
-    Raises FormatError: no camera matrix, wrong count, not a number, not finite, singular, skewed, or fisheye.
+    Raises FormatError: no camera matrix, wrong count, not a number, not finite, singular or skewed.
     """
     nodes = parse_storage(data, path)
     problems = ProblemList(path)
-    _refuse_fisheye(nodes, problems)
+    model = _model(nodes)
     matrix = _required(nodes, MATRIX_NAMES, "camera_matrix", 9, problems).reshape(3, 3)
     if not problems:
         _check_matrix(matrix, problems)
-    distortion = _distortion(nodes, problems)
+    distortion = _distortion(nodes, model, problems)
     problems.raise_if_any()
-    return Intrinsic(matrix, distortion)
+    return Intrinsic(matrix, distortion, model)
 
 
 def parse_extrinsic(data: bytes, path: str) -> Extrinsic:
@@ -112,9 +119,15 @@ def parse_extrinsic(data: bytes, path: str) -> Extrinsic:
 def intrinsic_xml(intrinsic: Intrinsic) -> bytes:
     """An intrinsic file as WILDTRACK and MultiviewX publish it, read by cv2.FileStorage."""
     return _xml(
+        *_fisheye_flag(intrinsic),
         ("camera_matrix", np.reshape(intrinsic.matrix, (3, 3)), Style.MATRIX),
         ("distortion_coefficients", np.reshape(intrinsic.distortion, (-1, 1)), Style.MATRIX),
     )
+
+
+def _fisheye_flag(intrinsic: Intrinsic) -> list[tuple[str, np.ndarray, Style]]:
+    """What OpenCV's own calibration program writes and reads."""
+    return [("fisheye_model", np.array([1]), Style.TEXT)] if intrinsic.model is CameraModel.FISHEYE else []
 
 
 def extrinsic_xml(extrinsic: Extrinsic, style: Style) -> bytes:
@@ -130,10 +143,11 @@ def extrinsic_xml(extrinsic: Extrinsic, style: Style) -> bytes:
 
 
 def intrinsic_yaml(intrinsic: Intrinsic) -> bytes:
-    return _yaml(
+    data = _yaml(
         ("camera_matrix", np.reshape(intrinsic.matrix, (3, 3))),
         ("distortion_coefficients", np.reshape(intrinsic.distortion, (-1, 1))),
     )
+    return data + b"fisheye_model: 1\n" if intrinsic.model is CameraModel.FISHEYE else data
 
 
 def extrinsic_yaml(extrinsic: Extrinsic) -> bytes:
@@ -188,21 +202,21 @@ def _check_matrix(matrix: np.ndarray, problems: ProblemList) -> None:
         problems.add("camera_matrix", "has skew, which OpenCV's camera model does not have")
 
 
-def _refuse_fisheye(nodes: Sequence[StoredNode], problems: ProblemList) -> None:
-    # Its four coefficients mean something else than k1 k2 p1 p2 and would be taken for these.
-    flag = _find(nodes, ("fisheyemodel",), problems)
-    model = _find(nodes, ("distortionmodel", "cameramodel"), problems)
-    if flag is not None and " ".join(flag.text).strip() not in ("", "0"):
-        problems.add(flag.place, "the fisheye model is not supported")
-    if model is not None and any(word in " ".join(model.text).lower() for word in ("fisheye", "equidistant")):
-        problems.add(model.place, "the fisheye model is not supported")
+def _model(nodes: Sequence[StoredNode]) -> CameraModel:
+    # A fisheye's four coefficients mean something else than k1 k2 p1 p2: the file has to say what they are.
+    quiet = ProblemList("")
+    flag, name = _find(nodes, FISHEYE_FLAGS, quiet), _find(nodes, MODEL_NAMES, quiet)
+    flagged = flag is not None and " ".join(flag.text).strip().lower() not in ("", "0", "false")
+    named = name is not None and any(word in " ".join(name.text).lower() for word in FISHEYE_WORDS)
+    return CameraModel.FISHEYE if flagged or named else CameraModel.PINHOLE
 
 
-def _distortion(nodes: Sequence[StoredNode], problems: ProblemList) -> np.ndarray:
+def _distortion(nodes: Sequence[StoredNode], model: CameraModel, problems: ProblemList) -> np.ndarray:
+    counts = FISHEYE_COUNTS if model is CameraModel.FISHEYE else DISTORTION_COUNTS
     node = _find(nodes, DISTORTION_NAMES, problems)
     if node is None or not " ".join(node.text).strip("[] \t\r\n"):
-        return np.zeros(5)
-    return _values(node, DISTORTION_COUNTS, problems)
+        return np.zeros(4 if model is CameraModel.FISHEYE else 5)
+    return _values(node, counts, problems)
 
 
 def _rotation_vector(nodes: Sequence[StoredNode], problems: ProblemList) -> np.ndarray:

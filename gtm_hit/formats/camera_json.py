@@ -11,8 +11,11 @@
           "rvec": [3 numbers],                         radians, world to camera, OpenCV
           "tvec": [3 numbers],                         metres, world to camera, OpenCV
           "distortion": [4, 5, 8, 12 or 14 numbers],   OpenCV's order; may be left out: no lens
-          "original": {"matrix": …, "distortion": …}   may be left out: as the camera saw it,
-        }                                              where the above describes undistorted images
+          "model": "pinhole",                          or "fisheye": cv2.fisheye's, whose distortion has
+                                                       4 numbers; may be left out: pinhole
+          "original": {"matrix": …,                    may be left out: as the camera saw it, where the
+                       "distortion": …, "model": …}    above describes undistorted images
+        }
       ]
     }
 
@@ -31,7 +34,7 @@ import numpy as np
 
 from gtm_hit.formats.files import read_source, write_bytes
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList, shown
-from gtm_hit.geometry.camera import CalibrationError, Camera
+from gtm_hit.geometry.camera import CalibrationError, Camera, CameraModel
 
 FORMAT, VERSION = "gtm-cameras", 1
 FACTS = ("name", "width", "height", "matrix", "rvec", "tvec", "distortion")
@@ -100,7 +103,8 @@ def content_digest(content: dict[str, Any]) -> str:
 def camera_facts(camera: Camera) -> dict[str, Any]:
     """One entry of the file; with an index, the arguments of `Camera` again."""
     facts = camera.as_json()
-    return {name: facts[name] for name in FACTS}
+    pinhole = camera.model is CameraModel.PINHOLE
+    return {name: facts[name] for name in (FACTS if pinhole else (*FACTS, "model"))}
 
 
 def _entries(path: Path) -> list[Any]:
@@ -119,17 +123,28 @@ def _entries(path: Path) -> list[Any]:
 
 def _camera(index: int, facts: Any, original: bool) -> Camera:
     """KeyError, TypeError or CalibrationError when the facts make no camera."""
+    name = _of_type(facts, "name", str)
     lens = _of_type(facts, "original", dict) if original else facts
+    model = _model(lens)
+    no_lens = [0.0] * 4 if model is CameraModel.FISHEYE else NO_LENS
     return Camera(
         index=index,
-        name=_of_type(facts, "name", str),
+        name=name,
         width=_of_type(facts, "width", int),
         height=_of_type(facts, "height", int),
         matrix=lens["matrix"],
         rvec=facts["rvec"],
         tvec=facts["tvec"],
-        distortion=lens.get("distortion", NO_LENS),
+        distortion=lens.get("distortion", no_lens),
+        model=model,
     )
+
+
+def _model(lens: dict[str, Any]) -> CameraModel:
+    value = lens.get("model", CameraModel.PINHOLE.value)
+    if not isinstance(value, str) or value not in set(CameraModel):
+        raise TypeError(f"model is {shown(value)}, not one of {', '.join(CameraModel)}")
+    return CameraModel(value)
 
 
 def _of_type(facts: Any, key: str, wanted: type) -> Any:

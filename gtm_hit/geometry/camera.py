@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from functools import cached_property
 from typing import Any
 
@@ -10,7 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gtm_hit.geometry import lens
+from gtm_hit.geometry import fisheye, lens
 
 Floats = NDArray[np.float64]
 
@@ -22,9 +23,16 @@ class CalibrationError(ValueError):
     """A calibration no camera can have; says which value."""
 
 
+class CameraModel(StrEnum):
+    """How a direction becomes a pixel. The browser's geometry knows the first; the others it looks up."""
+
+    PINHOLE = "pinhole"  # with OpenCV's usual distortion, see `lens`
+    FISHEYE = "fisheye"  # cv2.fisheye, see `fisheye`
+
+
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """Calibration in OpenCV's model: depth is `(rotation @ point + tvec)[2]`; the matrix has no skew."""
+    """Calibration in an OpenCV model: depth is `(rotation @ point + tvec)[2]`; the matrix has no skew."""
 
     index: int  # viewNum in files
     name: str
@@ -34,16 +42,14 @@ class Camera:
     rvec: Floats  # (3,) radians, world to camera
     tvec: Floats  # (3,) metres, world to camera
     distortion: Floats  # (4 | 5 | 8 | 12 | 14,) OpenCV's order; zeros for undistorted images
+    model: CameraModel = CameraModel.PINHOLE  # fisheye: 4 numbers of distortion
 
     def __post_init__(self) -> None:
         for name, shape in (("matrix", (3, 3)), ("rvec", (3,)), ("tvec", (3,)), ("distortion", None)):
             object.__setattr__(self, name, self._numbers(name, shape))
         if self.width < 1 or self.height < 1:
             raise CalibrationError(f"{self.name}: image size {self.width}×{self.height} is empty")
-        if self.distortion.size not in DISTORTION_LENGTHS:
-            raise CalibrationError(
-                f"{self.name}: distortion has {self.distortion.size} numbers, not one of {DISTORTION_LENGTHS}"
-            )
+        self._check_model()
         self._check_matrix()
 
     def _numbers(self, name: str, shape: tuple[int, ...] | None) -> Floats:
@@ -61,6 +67,19 @@ class Camera:
             )
         values.setflags(write=False)
         return values
+
+    def _check_model(self) -> None:
+        if self.model not in set(CameraModel):
+            known = ", ".join(CameraModel)
+            raise CalibrationError(f"{self.name}: model is {self.model!r}, not one of {known}")
+        object.__setattr__(self, "model", CameraModel(self.model))
+        is_fisheye = self.model is CameraModel.FISHEYE
+        lengths = (fisheye.COEFFICIENTS,) if is_fisheye else DISTORTION_LENGTHS
+        if self.distortion.size not in lengths:
+            wanted = "the 4 of the fisheye model" if is_fisheye else f"one of {lengths}"
+            raise CalibrationError(
+                f"{self.name}: distortion has {self.distortion.size} numbers, not {wanted}"
+            )
 
     def _check_matrix(self) -> None:
         (fx, skew, _), (low, fy, _), bottom = self.matrix.tolist()
@@ -85,11 +104,23 @@ class Camera:
 
     @cached_property
     def has_lens(self) -> bool:
-        return bool(np.any(self.distortion))
+        return self.model is CameraModel.FISHEYE or bool(np.any(self.distortion))
 
     @cached_property
     def tilt(self) -> Floats | None:
         return lens.tilt_matrix(self.distortion)
+
+    def distort(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        """Where the camera's lens moves normalised points x/z, y/z to."""
+        if self.model is CameraModel.FISHEYE:
+            return fisheye.distort(x, y, self.distortion)
+        return lens.distort(x, y, self.distortion, self.tilt)
+
+    def undistort(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        """Inverse of `distort`; NaN where nothing lands."""
+        if self.model is CameraModel.FISHEYE:
+            return fisheye.undistort(x, y, self.distortion)
+        return lens.undistort(x, y, self.distortion, self.tilt)
 
     @cached_property
     def facing(self) -> int:
@@ -112,13 +143,14 @@ class Camera:
             "rotation": self.rotation.tolist(),
             "tvec": self.tvec.tolist(),
             "distortion": self.distortion.tolist(),
+            "model": self.model.value,
         }
 
 
 def project(camera: Camera, points: ArrayLike) -> Floats:
-    """Pixels u and v, (N, 2), of world points (N, 3) in metres, as cv2.projectPoints has them.
+    """Pixels u and v, (N, 2), of world points (N, 3) in metres, as the model's projectPoints has them.
 
-    Points behind the camera are projected too; NaN for points in the camera plane.
+    Points behind the camera are projected too; NaN for points in the camera plane or past a fisheye's limit.
     """
     (fx, _, cx), (_, fy, cy), _ = camera.matrix.tolist()
     x, y, z = (np.asarray(points, dtype=np.float64).reshape(-1, 3) @ camera.rotation.T + camera.tvec).T
@@ -126,7 +158,7 @@ def project(camera: Camera, points: ArrayLike) -> Floats:
         scale = np.where(z == 0, np.nan, 1 / z)
         x, y = x * scale, y * scale
         if camera.has_lens:
-            x, y = lens.distort(x, y, camera.distortion, camera.tilt)
+            x, y = camera.distort(x, y)
     return np.column_stack((x * fx + cx, y * fy + cy))
 
 
@@ -139,7 +171,7 @@ def normalise(camera: Camera, pixels: ArrayLike) -> Floats:
     u, v = np.asarray(pixels, dtype=np.float64).reshape(-1, 2).T
     x, y = (u - cx) / fx, (v - cy) / fy
     if camera.has_lens:
-        x, y = lens.undistort(x, y, camera.distortion, camera.tilt)
+        x, y = camera.undistort(x, y)
     return np.column_stack((x, y))
 
 
@@ -160,11 +192,16 @@ def back_project(camera: Camera, pixels: ArrayLike, z: float = 0.0) -> Floats:
 def undistorted(camera: Camera, target_matrix: ArrayLike | None = None) -> Camera:
     """The camera of the images that `undistort_maps` makes; the same matrix unless another is given."""
     matrix = camera.matrix if target_matrix is None else np.asarray(target_matrix, dtype=np.float64)
-    return replace(camera, matrix=matrix, distortion=np.zeros(5))
+    return replace(camera, matrix=matrix, distortion=np.zeros(5), model=CameraModel.PINHOLE)
 
 
 def undistort_maps(camera: Camera, target_matrix: ArrayLike | None = None) -> tuple[NDArray, NDArray]:
     """The two maps with which cv2.remap takes the lens out of the camera's images."""
     target = undistorted(camera, target_matrix).matrix
     size = (camera.width, camera.height)
+    if camera.model is CameraModel.FISHEYE:
+        turn = np.eye(3)
+        return cv2.fisheye.initUndistortRectifyMap(
+            camera.matrix, camera.distortion, turn, target, size, cv2.CV_16SC2
+        )
     return cv2.initUndistortRectifyMap(camera.matrix, camera.distortion, None, target, size, cv2.CV_16SC2)

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gtm_hit.geometry import lens
 from gtm_hit.geometry.camera import Camera
 
 Array = NDArray[Any]  # float32 or float64, one shape throughout a block
@@ -137,7 +136,7 @@ class _Terms:
         inverse = np.divide(1.0, here[2], out=spare)
         x, y = here[0] * inverse, here[1] * inverse
         if self.lens:
-            x, y = lens.distort(x, y, self.camera.distortion, self.camera.tilt)
+            x, y = self.camera.distort(x, y)
             x *= fx
             y *= fy
         np.add(x, cx, out=u, casting="same_kind")

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gtm_hit.geometry import lens
-from gtm_hit.geometry.camera import Camera
+from gtm_hit.geometry.camera import Camera, CameraModel
 from gtm_hit.geometry.cylinder import BLOCK, Cylinder, FootRule, fill_block, is_visible
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.geometry.steps import Steps
@@ -32,6 +32,7 @@ MAGIC = b"GTM rectangles\n"
 HEADER_BYTES = 4096
 BOX_BYTES = 8
 TASKS_PER_CAMERA = 8
+USUAL = CameraModel.PINHOLE
 
 Boxes = NDArray[np.int16]
 
@@ -52,7 +53,10 @@ def table_digest(cameras: Sequence[Camera], grid: Grid, cylinder: Cylinder, rule
         for array in (camera.matrix, camera.rvec, camera.tvec, lens.padded(camera.distortion)):
             numbers += array.ravel().tolist()
     canonical = np.array(numbers, dtype="<f8") + 0.0  # makes -0.0 and 0.0 one number
-    return hashlib.sha256(f"{VERSION} {FootRule(rule)}\n".encode() + canonical.tobytes()).hexdigest()
+    # Only models other than the usual one are named: tables without them keep their digests.
+    models = [f" {place}:{each.model}" for place, each in enumerate(cameras) if each.model != USUAL]
+    head = f"{VERSION} {FootRule(rule)}{''.join(models)}\n"
+    return hashlib.sha256(head.encode() + canonical.tobytes()).hexdigest()
 
 
 class RectangleTable:

@@ -8,6 +8,7 @@ from django.db import models
 from django.db.models import Q
 
 from gtm_hit.geometry.camera import Camera as CalibratedCamera
+from gtm_hit.geometry.camera import CameraModel
 from gtm_hit.geometry.cylinder import Cylinder, FootRule
 from gtm_hit.geometry.grid import Grid
 
@@ -110,6 +111,12 @@ class Camera(models.Model):
     rvec = models.JSONField(help_text="3 numbers, radians")
     tvec = models.JSONField(help_text="3 numbers, metres")
     distortion = models.JSONField(default=list, help_text="OpenCV order; zeros for undistorted images")
+    model = models.CharField(
+        max_length=20,
+        choices=[(model.value, model.value) for model in CameraModel],
+        default=CameraModel.PINHOLE.value,
+        help_text="what the numbers of distortion mean",
+    )
 
     class Meta:
         ordering = ["dataset", "index"]
@@ -133,6 +140,7 @@ class Camera(models.Model):
             rvec=np.array(self.rvec, dtype=np.float64),
             tvec=np.array(self.tvec, dtype=np.float64),
             distortion=np.array(self.distortion or [0.0] * 5, dtype=np.float64),
+            model=CameraModel(self.model),
         )
 
 

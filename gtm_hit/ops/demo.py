@@ -108,7 +108,7 @@ def _write_calibrations(folder: Path, cameras: Sequence[Camera]) -> None:
     for camera in cameras:
         extrinsic = extrinsic_xml(Extrinsic(camera.rvec, camera.tvec), Style.MATRIX)
         write_bytes(calibrations / "extrinsic" / f"extr_C{camera.index + 1}.xml", extrinsic)
-        intrinsic = intrinsic_xml(Intrinsic(camera.matrix, camera.distortion))
+        intrinsic = intrinsic_xml(Intrinsic(camera.matrix, camera.distortion, camera.model))
         write_bytes(calibrations / "intrinsic_zero" / f"intr_C{camera.index + 1}.xml", intrinsic)
 
 

@@ -24,10 +24,10 @@ def calibration_files(
     without it the lens decides.
     """
     if folder is None:
-        folder = "intrinsic" if any(camera.distortion.any() for camera in cameras) else "intrinsic_zero"
+        folder = "intrinsic" if any(camera.has_lens for camera in cameras) else "intrinsic_zero"
     for name, camera in zip(published_names(cameras, rule), cameras, strict=True):
         pose = Extrinsic(camera.rvec, camera.tvec).in_unit(UNITS[rule])
-        lens = Intrinsic(camera.matrix, camera.distortion)
+        lens = Intrinsic(camera.matrix, camera.distortion, camera.model)
         yield f"calibrations/extrinsic/extr_{name}.xml", extrinsic_xml(pose, STYLES[rule])
         yield f"calibrations/{folder}/intr_{name}.xml", intrinsic_xml(lens)
 

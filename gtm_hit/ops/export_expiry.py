@@ -78,11 +78,12 @@ def _remove_orphans(oldest: datetime) -> None:
 
 
 def _remove_unfinished_tables(now: datetime) -> None:
-    """Rectangle tables whose process was killed while it computed them."""
+    """Rectangle tables and grid files whose process was killed while it made them."""
     oldest = (now - OLDEST_UNFINISHED).timestamp()
-    for path in settings.TABLES_ROOT.glob(".rectangles-*"):
-        if path.stat().st_mtime < oldest:
-            _remove(path)
+    for pattern in (".rectangles-*", ".grid-*"):
+        for path in settings.TABLES_ROOT.glob(pattern):
+            if path.stat().st_mtime < oldest:
+                _remove(path)
 
 
 def _remove(path: Path) -> None:

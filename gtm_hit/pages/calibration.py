@@ -76,8 +76,9 @@ def calibration(request: StaffRequest, slug: str) -> HttpResponse:
         "dataset": dataset,
         "form": form,
         "cameras": [
-            (row.name, row.width, row.height, row.calibrated.centre.tolist(), row.matrix, any(row.distortion))
+            (row.name, row.width, row.height, camera.centre.tolist(), row.matrix, camera.has_lens)
             for row in dataset.cameras.all()
+            for camera in [row.calibrated]
         ],
         "versions": versions.versions(dataset)[:ROWS_SHOWN],
         "jobs": _jobs().filter(dataset=dataset)[:ROWS_SHOWN],

@@ -2,6 +2,9 @@ import { Lens, Point } from "./lens.js";
 
 const STEEP = 0.1; // below this share of "up" in the image, a camera counts as looking straight down or up
 
+/** Models this module knows; of cameras with others see table_camera.js. */
+export const MODELS = ["pinhole"];
+
 /**
  * @typedef {object} CameraJSON a calibration in OpenCV's model, as the server sends it
  * @property {number} index viewNum in files
@@ -12,6 +15,8 @@ const STEEP = 0.1; // below this share of "up" in the image, a camera counts as 
  * @property {number[][]} rotation 3×3, world to camera
  * @property {number[]} tvec 3, metres, world to camera
  * @property {number[]} distortion OpenCV's order; zeros for undistorted images
+ * @property {string} model what the numbers of distortion mean
+ * @property {string} grid address of its rectangles, see grid_file.js
  */
 
 /** A calibrated static camera. World coordinates are metres, the ground is z = 0, pixels are x right, y down. */
@@ -70,10 +75,11 @@ export class Camera {
 /**
  * Pixel of a world point in metres; null behind the camera and where the lens model folds back.
  *
- * @param {Camera} camera
+ * @param {Camera} camera or a TableCamera
  * @returns {{x: number, y: number}|null}
  */
 export function project(camera, x, y, z = 0) {
+  if (camera.byTable) return camera.toPixel(x, y, z);
   const [right, down, depth] = camera.seen(x, y, z);
   if (!(depth * camera.facing > 0)) return null;
   if (camera.lens && !(Math.hypot(right, down) / Math.abs(depth) < camera.lens.limit)) return null;
@@ -88,6 +94,7 @@ export function project(camera, x, y, z = 0) {
  * @returns {{x: number, y: number}|null}
  */
 export function backProject(camera, u, v, z = 0) {
+  if (camera.byTable) return camera.toGround(u, v, z);
   const direction = new Point();
   if (!camera.normalise(u, v, direction)) return null;
   const [x, y, up] = camera.ray(direction.x, direction.y);

@@ -63,6 +63,7 @@ function agreement(candidate, steps) {
 }
 
 function direction(camera, x, y, reachX, reachY) {
+  if (camera.byTable) return camera.direction(x, y, reachX ? 0 : 1);
   const [before, after] = [project(camera, x - reachX, y - reachY), project(camera, x + reachX, y + reachY)];
   if (!before || !after) return null;
   const [right, down] = [after.x - before.x, after.y - before.y];

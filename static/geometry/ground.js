@@ -43,6 +43,7 @@ export function gridLines(camera, grid, spacing = 1) {
  * @returns {XY[][]} no polyline, one, or several where the lens model ends in between
  */
 export function groundLine(camera, x1, y1, x2, y2) {
+  if (camera.byTable) return camera.line(x1, y1, x2, y2);
   const from = camera.seen(x1, y1, 0).map((value) => value * camera.facing);
   const to = camera.seen(x2, y2, 0).map((value) => value * camera.facing);
   const interval = visibleInterval(camera, from, to);
@@ -68,6 +69,7 @@ export function groundLine(camera, x1, y1, x2, y2) {
  * @returns {XY[]} metres
  */
 export function footprint(camera, grid) {
+  if (camera.byTable) return camera.outline();
   const [cx, cy, height] = camera.centre;
   // On the way to the ground a ray loses the camera's height: the ray's z has the other sign.
   const sign = camera.facing * (height > 0 ? -1 : 1);

@@ -31,7 +31,14 @@ export function rectangle(camera, grid, cylinder, rule, position) {
   return { xmin: box[0], ymin: box[1], xmax: box[2], ymax: box[3] };
 }
 
-/** The same into `out` (xmin, ymin, xmax, ymax), without allocating; false, and `out` unspecified, if not visible. */
+/** The rectangle that a camera's table has for a position: what the rule gives for the usual person. */
+export function rectangleIn(boxes, position) {
+  const at = 4 * position;
+  if (!(boxes[at + 2] > 0)) return null;
+  return { xmin: boxes[at], ymin: boxes[at + 1], xmax: boxes[at + 2], ymax: boxes[at + 3] };
+}
+
+/** What `rectangle` gives into `out` (xmin, ymin, xmax, ymax), without allocating; false, and `out` unspecified, if not visible. */
 export function rectangleInto(out, camera, grid, cylinder, rule, position) {
   if (rule === "corners") return cornersRule(out, camera, grid, cylinder, position);
   if (rule === "centre") return centreRule(out, camera, grid, cylinder, position);

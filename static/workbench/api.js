@@ -47,6 +47,11 @@ export class Api {
     return this._json("PUT", `frames/${number}/`, body, { keepalive });
   }
 
+  /** Boxes of people {position, height, radius}, by camera. */
+  rectangles(people) {
+    return this._json("POST", "rectangles/", { people });
+  }
+
   submit() {
     return this._json("POST", "submit/", {});
   }
@@ -62,11 +67,17 @@ export class Api {
   /** An image's bytes; `signal` gives up on views nobody looks at any more. */
   async blob(address, signal) {
     const limited = AbortSignal.any([signal, AbortSignal.timeout(TIMEOUT_OF_PICTURES)].filter(Boolean));
-    return this._fetch(address, { headers: this._headers(), signal: limited }, (response) => response.blob());
+    return this._fetch(address, { headers: this.headers(), signal: limited }, (response) => response.blob());
+  }
+
+  /** What says who is asking. */
+  headers() {
+    if (this._token) return { Authorization: `${this._scheme} ${this._token}` };
+    return this._csrf ? { "X-CSRFToken": this._csrf } : {};
   }
 
   async _json(method, path, body, { keepalive = false } = {}) {
-    const headers = { ...this._headers(), Accept: "application/json" };
+    const headers = { ...this.headers(), Accept: "application/json" };
     if (body !== undefined) headers["Content-Type"] = "application/json";
     const options = {
       method,
@@ -91,11 +102,6 @@ export class Api {
       if (error instanceof SyntaxError) throw new ApiError(200, "unreadable", error.message);
       throw new NetworkError(error.message);
     }
-  }
-
-  _headers() {
-    if (this._token) return { Authorization: `${this._scheme} ${this._token}` };
-    return this._csrf ? { "X-CSRFToken": this._csrf } : {};
   }
 }
 

@@ -12,6 +12,7 @@ export class CameraView {
     this.id = `camera-${index}`;
     this.index = index;
     this.title = camera.name;
+    this.byTable = Boolean(camera.byTable); // of a model that this page does not know
     this.size = { width: camera.width, height: camera.height };
     this.largest = 8; // CSS pixels per image pixel
     this._scene = scene;

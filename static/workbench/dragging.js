@@ -26,6 +26,7 @@ export class Dragging {
   /** @param {"foot"|"top"} part @returns {boolean} whether the person can be dragged */
   begin(pane, at, person, part, event) {
     if (this._store.person(person.person) !== person || this._guard.refused(event)) return false;
+    if (part === "top" && this._sizes.refused(event)) return false;
     this._store.select(person.person);
     const from = pane.transform.toSource(at.x, at.y);
     const held = part === "top" ? { x: from.x, y: pane.view.box(person).ymin } : pane.view.foot(person);
@@ -73,7 +74,7 @@ export class Dragging {
   _carry(drag, foot) {
     const ground = drag.pane.view.ground(foot);
     if (!ground) {
-      drag.words = [gettext("above the horizon")];
+      drag.words = [drag.pane.view.byTable ? gettext("no feet in the ground area") : gettext("above the horizon")];
       return;
     }
     const preview = landing(this._scene, this._store, drag.person, ground);

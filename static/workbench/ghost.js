@@ -34,7 +34,7 @@ export class Ghost {
     const spot = spotOn(this._scene, this._store, this._heads.ground(pane, at, moved), moved?.person ?? null);
     if (spot.position !== null && this._isShown(pane, spot, over)) return;
     const doubt = this._doubt(pane, spot, moved);
-    this._shown = { pane, at, spot, over, words: this._words(spot, doubt), ...this._figure(spot, moved) };
+    this._shown = { pane, at, spot, over, words: this._words(pane, spot, doubt), ...this._figure(spot, moved) };
     this._point(doubt.settles);
     this._panes.markPeople();
   }
@@ -46,8 +46,8 @@ export class Ghost {
     this._panes.markPeople();
   }
 
-  _words(spot, { metres, settles }) {
-    const words = spotWords(this._scene, spot);
+  _words(pane, spot, { metres, settles }) {
+    const words = spotWords(this._scene, spot, pane.view.byTable);
     if (this._heads.active) words.push(gettext("the top of the head is here"));
     if (settles) words.push(gettext("± {cm} cm: Alt + click in {view}, too", { cm: Math.round(100 * metres), view: settles.view.title }));
     return words;
@@ -77,7 +77,7 @@ export class Ghost {
   }
 
   _canPlace(pane, at) {
-    if (!this._guard.editable || !pane.transform) return false;
+    if (!this._guard.editable || !pane.transform || this._heads.refusal(pane)) return false;
     const { x, y } = pane.transform.toSource(at.x, at.y);
     return x >= 0 && y >= 0 && x < pane.view.size.width && y < pane.view.size.height;
   }

@@ -22,6 +22,13 @@ export class Heads extends Emitter {
     this._notices.say(words);
   }
 
+  /** Why no head can be clicked on in a view, or null. */
+  refusal(pane) {
+    if (!this.active || !pane.view.byTable) return null;
+    const words = { view: pane.view.title, key: keyFor("heads") };
+    return gettext("This page does not know the lens of {view}, so heads mean no place there. {key} means the feet again", words);
+  }
+
   /** Metres above the ground of what is clicked on. @param {object|null} person null: somebody new */
   height(pane, person) {
     if (!this.active || pane.view.index === null) return 0;

@@ -61,6 +61,15 @@ export class Images extends Emitter {
     return this._pictures.get(`${frame} ${camera} ${size}`)?.bitmap ?? null;
   }
 
+  /** When nothing of a frame is on its way any more. */
+  settled(frame) {
+    const busy = () => [...this._pictures.values()].some((one) => one.frame === frame && (one.status === "waiting" || one.status === "loading"));
+    return new Promise((done) => {
+      if (!busy()) return done();
+      const stop = this.on("picture", () => busy() || done(stop()));
+    });
+  }
+
   /** Frames in order of importance; everything else may stop loading and be let go. */
   want(frames) {
     this._ranks = new Map(frames.map((frame, index) => [frame, index]));

@@ -5,6 +5,7 @@ import { fetchParts } from "./fetched.js";
 import { gettext } from "./messages.js";
 import { openSession } from "./session.js";
 import { started } from "./start.js";
+import { fetchTables } from "./tables.js";
 import { buildWorkbench } from "./workbench.js";
 
 const { mode, home } = document.body.dataset;
@@ -16,8 +17,11 @@ function reason(error) {
 }
 
 try {
-  await buildWorkbench(root, await openSession(await started), { mode, home });
+  const waiting = root.querySelector(".starting");
+  const session = await openSession(await started, (words) => (waiting.textContent = words));
+  await buildWorkbench(root, session, { mode, home });
   root.dataset.ready = "true";
+  fetchTables(session, session.store.current);
   document.addEventListener("keydown", fetchParts, { once: true });
   document.addEventListener("pointerdown", fetchParts, { once: true });
 } catch (error) {

@@ -52,6 +52,8 @@ export class Moving {
   /** The feet of the selected person once more, in another view. */
   sight(pane, at, event) {
     if (this.guard.refused(event)) return;
+    const refusal = this.heads.refusal(pane);
+    if (refusal) return this.guard.say(event, refusal);
     if (pane.view.index === null) return this.guard.say(event, gettext("The map sees from nowhere: click the feet in a camera's view"));
     const person = this.store.selected();
     if (!person) return this.place(pane, at, event);
@@ -94,8 +96,12 @@ export class Moving {
   }
 
   _positionUnder(pane, at, event, person) {
+    const refusal = this.heads.refusal(pane);
+    if (refusal) this.guard.say(event, refusal);
+    if (refusal) return null;
     const { position, problem } = spotOn(this.scene, this.store, this.heads.ground(pane, at, person));
-    if (problem === "horizon" && this.heads.active) this.guard.say(event, gettext("No head can be here: the line of sight never comes down to it"));
+    if (problem === "horizon" && pane.view.byTable) this.guard.say(event, gettext("Nobody in the ground area would have their feet here"));
+    else if (problem === "horizon" && this.heads.active) this.guard.say(event, gettext("No head can be here: the line of sight never comes down to it"));
     else if (problem === "horizon") this.guard.say(event, gettext("Above the horizon there is no ground: click where the feet are"));
     if (problem === "outside") this.guard.say(event, gettext("Outside the ground area – {key} shows its border", { key: keyFor("outline") }));
     return position;

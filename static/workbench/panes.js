@@ -35,6 +35,7 @@ export class Panes extends Emitter {
     this.active = this.all[0];
     this.active.element.classList.add("active");
     this._follow(store, images);
+    scene.ownSizes?.on("change", () => this.markPeople(true)); // boxes nobody knew when people were drawn
   }
 
   /** Something drawn over the people: `(pane) => items`, asked at every paint. */

@@ -1,12 +1,12 @@
 import { Camera, backProject, project } from "../geometry/camera.js";
 import { Grid } from "../geometry/grid.js";
-import { rectangle } from "../geometry/rectangle.js";
+import { rectangle, rectangleIn } from "../geometry/rectangle.js";
 import { byPerson } from "./annotation.js";
 
 /** What does not change while annotating: cameras, grid, cylinder, frames; and the geometry between them. */
 export class Scene {
-  /** @param {object} json the server's scene */
-  constructor(json) {
+  /** @param {object} json the server's scene @param {Map} byTable cameras of unknown models, with their boxes */
+  constructor(json, byTable = new Map()) {
     this.mode = json.mode;
     this.dataset = json.dataset;
     this.layer = json.layer;
@@ -15,26 +15,50 @@ export class Scene {
     this.readOnlyReason = json.read_only_reason;
     this.nextPerson = json.next_person;
     this.frames = json.frames;
-    this.cameras = json.cameras.map((camera) => new Camera(camera));
+    this.cameras = json.cameras.map((camera) => byTable.get(camera.index)?.camera ?? new Camera(camera));
+    this._views = json.cameras;
+    this._tables = json.cameras.map(({ index }) => byTable.get(index)?.boxes ?? null);
     this.grid = new Grid(json.grid);
     this.cylinder = json.cylinder;
     this.sizes = json.sizes; // {height, radius}: [least, most] metres a person may have
     this.footRule = json.foot_rule;
     this.neighbours = readNeighbours(json.neighbours);
     this._rectangles = new WeakMap();
+    this.ownSizes = null;
   }
 
   /** Rectangles of one annotation in all views, `null` where not visible; computed once per annotation. */
   rectangles(annotation) {
     let rectangles = this._rectangles.get(annotation);
     if (!rectangles) {
-      const cylinder = this.cylinderOf(annotation);
-      rectangles = this.cameras.map((camera) =>
-        rectangle(camera, this.grid, cylinder, this.footRule, annotation.position),
-      );
+      rectangles = this.cameras.map((_, index) => this._rectangle(index, annotation));
       this._rectangles.set(annotation, rectangles);
     }
     return rectangles;
+  }
+
+  /** The usual person is looked up, once the table is here; others are computed by the same rule. */
+  _rectangle(index, annotation) {
+    const [camera, boxes] = [this.cameras[index], this._tables[index]];
+    const usual = (annotation.height ?? annotation.radius ?? null) === null;
+    if (boxes && usual) return rectangleIn(boxes, annotation.position);
+    if (camera.byTable) return this.ownSizes?.rectangle(index, annotation) ?? null;
+    return rectangle(camera, this.grid, this.cylinderOf(annotation), this.footRule, annotation.position);
+  }
+
+  /** @param {import("./own_sizes.js").OwnSizes} ownSizes what the tables do not hold */
+  askFor(ownSizes) {
+    this.ownSizes = ownSizes;
+    ownSizes.on("change", () => (this._rectangles = new WeakMap()));
+  }
+
+  /** Cameras whose table is not here, as the server describes them. */
+  wantedTables() {
+    return this._views.filter(({ index }) => !this._tables[index]);
+  }
+
+  useTable(index, boxes) {
+    this._tables[index] = boxes;
   }
 
   cylinderOf(annotation) {

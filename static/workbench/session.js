@@ -4,18 +4,22 @@ import { Journal } from "./journal.js";
 import { withRefill } from "./keyframes.js";
 import { Loader } from "./loader.js";
 import { Saver } from "./saver.js";
-import { Scene } from "./scene.js";
 import { Store } from "./store.js";
+import { openScene } from "./tables.js";
 
 /**
  * Everything behind the page: what is annotated, how it is kept, and the pictures. Knows no page.
- * @typedef {{api: import("./api.js").Api, scene: Scene, store: Store, history: History, saver: Saver, loader: Loader,
+ * @typedef {{api: import("./api.js").Api, scene: import("./scene.js").Scene, store: Store, history: History, saver: Saver, loader: Loader,
  *            journal: Journal, images: import("./images.js").Images, activity: Activity}} Session
  */
 
-/** @param started what start.js has asked for already @returns {Promise<Session>} */
-export async function openSession({ api, scene: answer, first, images }) {
-  const scene = new Scene(answer);
+/**
+ * @param started what start.js has asked for already
+ * @param {(words: string) => void} say what takes long
+ * @returns {Promise<Session>}
+ */
+export async function openSession({ api, scene: answer, first, images }, say) {
+  const scene = await openScene(api, answer, () => images.settled(first), say);
   const store = new Store(scene.frames.map(({ number }) => number), scene.nextPerson);
   const loader = new Loader({ api, scene, store });
   const [states, journal] = await Promise.all([loader.start(first), Journal.open(...layerNames(scene))]);

@@ -39,6 +39,7 @@ export class Sizes {
 
   /** @param {{height?: number|null, radius?: number|null}} values metres; null: the dataset's cylinder */
   async set(person, values) {
+    if (Object.values(values).some((value) => value !== null) && this.refused()) return;
     if (!(await this._laterFramesLoaded())) return;
     const current = this.store.person(person.person);
     if (!current) return;
@@ -46,6 +47,14 @@ export class Sizes {
     const { height, radius } = this.scene.cylinderOf(this.store.person(person.person));
     const words = { person: person.person, height: height.toFixed(2), width: (2 * radius).toFixed(2) };
     this.guard.say(this.guard.besideFoot(current), gettext("Person {person}: {height} m tall, {width} m wide", words));
+  }
+
+  /** Tables hold the usual size only: where a view has nothing else, nobody gets a size of their own, and that is said. */
+  refused(place = null) {
+    const unknown = this.scene.cameras.filter(({ byTable }) => byTable).map(({ name }) => name);
+    if (!unknown.length) return false;
+    this.guard.say(place, gettext("Everybody keeps the usual size here: this page does not know the lens of {views}", { views: unknown.join(", ") }));
+    return true;
   }
 
   /** The usual size is no size of one's own. */

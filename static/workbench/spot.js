@@ -25,8 +25,12 @@ export function insideBy({ origin, extent, step }, { x, y }) {
   return -Math.hypot(Math.max(-dx, dx - extent[0], 0), Math.max(-dy, dy - extent[1], 0));
 }
 
-/** The lines beside the pointer: where it is, and what there is to say about it. */
-export function spotWords(scene, spot) {
+/**
+ * The lines beside the pointer: where it is, and what there is to say about it.
+ * @param {boolean} byTable a view that knows no horizon, only whose feet are where
+ */
+export function spotWords(scene, spot, byTable = false) {
+  if (spot.problem === "horizon" && byTable) return [gettext("no feet in the ground area")];
   if (spot.problem === "horizon") return [gettext("above the horizon")];
   const { x, y } = spot.position === null ? spot.ground : scene.metres(spot.position);
   const where = gettext("x {x}  y {y} m", { x: x.toFixed(3), y: y.toFixed(3) });

@@ -24,6 +24,7 @@ from gtm_hit.formats.calibration_xml import (
     read_intrinsic,
 )
 from gtm_hit.formats.problems import FormatError
+from gtm_hit.geometry.camera import CameraModel
 
 MATRIX = "900.5 0 960 0 901.5 540 0 0 1"
 NUMBERS = [900.5, 0, 960, 0, 901.5, 540, 0, 0, 1]
@@ -230,7 +231,39 @@ def test_skew_is_refused_because_projection_would_ignore_it() -> None:
     "node", ["<fisheye_model>1</fisheye_model>", "<distortion_model>equidistant</distortion_model>"]
 )
 def test_fisheye_coefficients_are_not_taken_for_ordinary_ones(node: str) -> None:
-    assert "fisheye" in reasons(storage(node, camera_matrix(), "<D>1 2 3 4</D>"))[0]
+    lens = parse_intrinsic(storage(node, camera_matrix(), "<D>1 2 3 4</D>"), "file.xml")
+    assert (lens.model, lens.distortion.tolist()) == (CameraModel.FISHEYE, [1, 2, 3, 4])
+
+
+def test_a_fisheye_with_another_number_of_coefficients_is_refused() -> None:
+    node = "<fisheye_model>1</fisheye_model>"
+    assert "5 numbers where 4" in reasons(storage(node, camera_matrix(), "<D>1 2 3 4 5</D>"))[0]
+
+
+@pytest.mark.parametrize("suffix", ["xml", "yml"])
+def test_a_fisheye_calibration_as_opencvs_own_program_writes_it_is_read(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"intr_C1.{suffix}"
+    written = cv2.FileStorage(str(path), cv2.FILE_STORAGE_WRITE)
+    written.write("fisheye_model", 1)
+    written.write("camera_matrix", LENS.matrix)
+    written.write("distortion_coefficients", np.array([[0.1], [-0.02], [0.003], [-0.0004]]))
+    written.release()
+    lens = read_intrinsic(path)
+    assert lens.model is CameraModel.FISHEYE
+    np.testing.assert_array_equal(lens.matrix, LENS.matrix)
+    assert lens.distortion.tolist() == [0.1, -0.02, 0.003, -0.0004]
+
+
+def test_a_fisheye_written_is_read_back_and_by_opencv_too(tmp_path: Path) -> None:
+    fisheye = Intrinsic(LENS.matrix, np.array([0.1, -0.02, 0.003, -0.0004]), CameraModel.FISHEYE)
+    for data, name in [(intrinsic_xml(fisheye), "a.xml"), (intrinsic_yaml(fisheye), "a.yml")]:
+        (tmp_path / name).write_bytes(data)
+        again = read_intrinsic(tmp_path / name)
+        assert again.model is CameraModel.FISHEYE
+        np.testing.assert_array_equal(again.distortion, fisheye.distortion)
+        stored = cv2.FileStorage(str(tmp_path / name), cv2.FILE_STORAGE_READ)
+        assert stored.getNode("fisheye_model").real() == 1
+        np.testing.assert_array_equal(stored.getNode("camera_matrix").mat(), LENS.matrix)
 
 
 @pytest.mark.parametrize(

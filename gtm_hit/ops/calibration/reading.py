@@ -36,7 +36,7 @@ def read_replacement(dataset: Dataset, path: Path, unit: str = "m") -> list[Came
     views = views_of(files, names, sizes, unit, undistort=False, problems=problems)
     cameras = [view.camera for view in views]
     for camera in cameras:
-        if dataset.undistorted and camera.distortion.any():
+        if dataset.undistorted and camera.has_lens:
             problems.add(
                 f"camera {camera.name}",
                 "has lens distortion, but the lens was taken out of this dataset's images: "

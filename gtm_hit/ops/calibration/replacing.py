@@ -79,7 +79,8 @@ def replace_calibration(
         for row, camera in zip(dataset.cameras.select_for_update(), cameras, strict=True):
             row.matrix, row.distortion = camera.matrix.tolist(), camera.distortion.tolist()
             row.rvec, row.tvec = camera.rvec.tolist(), camera.tvec.tolist()
-            row.save(update_fields=["matrix", "distortion", "rvec", "tvec"])
+            row.model = camera.model.value
+            row.save(update_fields=["matrix", "distortion", "rvec", "tvec", "model"])
         return versions.put_in_place(dataset, cameras, source, user)
 
 

@@ -117,6 +117,8 @@ def tell_differences(
             for name in ("width", "height", "matrix", "rvec", "tvec", "distortion")
             if not _equal(getattr(camera, name), getattr(there, name))
         ]
+        if camera.model != there.model:
+            different.append("model")
         if different:
             hint = _unit_hint(camera, there, unit) if different == ["tvec"] else ""
             problems.add(
@@ -187,7 +189,16 @@ def _read_view(
         return None
     pose = extrinsic.in_metres(unit)
     try:
-        camera = Camera(index, name, *size, intrinsic.matrix, pose.rvec, pose.tvec, intrinsic.distortion)
+        camera = Camera(
+            index,
+            name,
+            *size,
+            intrinsic.matrix,
+            pose.rvec,
+            pose.tvec,
+            intrinsic.distortion,
+            intrinsic.model,
+        )
         if not undistort:
             return View(camera)
         return undistorting(camera, camera.matrix if ideal is None else ideal.matrix)

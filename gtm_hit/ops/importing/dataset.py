@@ -16,6 +16,7 @@ from gtm_hit.formats.problems import FormatError, Problem, ProblemList
 from gtm_hit.geometry.camera import Camera as CalibratedCamera
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Dataset, Frame, Image, Layer, LayerFrame
+from gtm_hit.ops import grid_files
 from gtm_hit.ops.calibration import versions
 from gtm_hit.ops.images import MOST_PIXELS, Derivatives
 from gtm_hit.ops.importing import rows
@@ -281,6 +282,7 @@ def _make_table(reading: Reading, progress: Progress, problems: ProblemList) -> 
         dataset.rule,
         partial(progress, "computing rectangles"),
     )
+    grid_files.make(dataset, table, cameras)
     blind = [camera.name for camera in cameras if not table.visible(camera.index).any()]
     if len(blind) == len(cameras):
         problems.add("calibrations", "no camera sees any position: grid, origin or --tvec-unit is wrong")

@@ -33,6 +33,7 @@ def add_cameras(dataset: Dataset, cameras: Sequence[CalibratedCamera]) -> None:
             rvec=camera.rvec.tolist(),
             tvec=camera.tvec.tolist(),
             distortion=camera.distortion.tolist(),
+            model=camera.model.value,
         )
         for camera in cameras
     )

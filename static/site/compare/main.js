@@ -4,7 +4,7 @@ import { Images } from "../../workbench/images.js";
 import { gettext } from "../../workbench/messages.js";
 import { Notices } from "../../workbench/notices.js";
 import { problemWords } from "../../workbench/failure_words.js";
-import { Scene } from "../../workbench/scene.js";
+import { fetchTables, openScene } from "../../workbench/tables.js";
 import { CompareStore } from "./store.js";
 import { buildViewer } from "./viewer.js";
 
@@ -31,10 +31,12 @@ try {
 
 async function start() {
   const api = new Api({ base, token: "", mode: "layer", csrf: "" });
-  const scene = new Scene(await api.scene());
-  const images = new Images(api, scene);
+  const answer = await api.scene();
+  const images = new Images(api, answer);
   const store = new CompareStore(frames);
   if (window.location.hash) store.open(Number(window.location.hash.slice(1)));
+  images.want([store.current]);
+  const scene = await openScene(api, answer, () => images.settled(store.current), (words) => (root.textContent = words));
   const notices = new Notices();
   store.on("frame", () => {
     window.history.replaceState(null, "", `#${store.current}`);
@@ -43,6 +45,7 @@ async function start() {
   buildViewer(root, { store, scene, images, names: { truth, found }, home });
   root.append(notices.element);
   await look(store, images);
+  fetchTables({ api, scene, images }, store.current);
 }
 
 /** The frame looked at first, then those one key away. */
