@@ -136,7 +136,7 @@ REST_FRAMEWORK = {
     "DEFAULT_RENDERER_CLASSES": ["rest_framework.renderers.JSONRenderer"],
     "DEFAULT_PARSER_CLASSES": ["rest_framework.parsers.JSONParser"],
     "DEFAULT_SCHEMA_CLASS": "drf_spectacular.openapi.AutoSchema",
-    "EXCEPTION_HANDLER": "gtm_hit.api.errors.handle",
+    "EXCEPTION_HANDLER": "gtm_hit.api.common.errors.handle",
 }
 SPECTACULAR_SETTINGS = {
     "TITLE": "Ground Truth Marker",

@@ -8,7 +8,7 @@ from rcssmin import cssmin
 from rjsmin import jsmin
 from whitenoise.storage import CompressedManifestStaticFilesStorage
 
-OURS = {"geometry", "site", "workbench"}
+OURS = {"base", "compare", "geometry", "saving", "site", "tables", "truth", "views", "workbench"}
 # As Django writes its patterns of imports; it has none for modules that are resolved now and imported later.
 RESOLVED = (
     "*.js",

@@ -5,7 +5,7 @@ from django.contrib.auth.views import LogoutView
 from django.urls import include, path
 from django.views.generic import RedirectView
 
-from gtm_hit.pages.login import LimitedLogin
+from gtm_hit.pages.common.login import LimitedLogin
 
 urlpatterns = [
     # One door: what limits and logs one login does so for all.
@@ -17,4 +17,4 @@ urlpatterns = [
     path("", include("gtm_hit.pages.urls")),
 ]
 
-handler500 = "gtm_hit.pages.failure.failed"
+handler500 = "gtm_hit.pages.common.failure.failed"

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from gtm_hit.demo.render import WORKERS, render_scene
 from gtm_hit.demo.scene import read_scene
-from gtm_hit.formats.camera_json import load_cameras
+from gtm_hit.formats.calibration.cameras_json import load_cameras
 
 CAMERAS = Path(__file__).resolve().parent.parent / "fixtures" / "wildtrack_cameras.json"
 

@@ -2,17 +2,17 @@
  * A scripted annotator at the real workbench. It sees the truth and decides perfectly; its hands are real events
  * at the real page, and every key press and every click is counted. Clicks miss by a normal error.
  */
-import { Activity } from "/static/workbench/activity.js";
-import { History } from "/static/workbench/history.js";
-import { Images } from "/static/workbench/images.js";
-import { Journal } from "/static/workbench/journal.js";
-import { withRefill } from "/static/workbench/keyframes.js";
-import { Loader } from "/static/workbench/loader.js";
-import { Pane } from "/static/workbench/pane.js";
-import { Saver } from "/static/workbench/saver.js";
-import { Scene } from "/static/workbench/scene.js";
-import { Store } from "/static/workbench/store.js";
-import { Tour } from "/static/workbench/tour.js";
+import { Activity } from "/static/saving/activity.js";
+import { History } from "/static/truth/history.js";
+import { Images } from "/static/views/images.js";
+import { Journal } from "/static/saving/journal.js";
+import { withRefill } from "/static/truth/keyframes.js";
+import { Loader } from "/static/saving/loader.js";
+import { Pane } from "/static/views/pane.js";
+import { Saver } from "/static/saving/saver.js";
+import { Scene } from "/static/truth/scene.js";
+import { Store } from "/static/truth/store.js";
+import { Tour } from "/static/workbench/people/queue.js";
 import { buildWorkbench } from "/static/workbench/workbench.js";
 
 const NEAR = 0.05; // metres from the truth that are near enough

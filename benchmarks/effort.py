@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from playwright.sync_api import Browser, Route, ViewportSize, sync_playwright
 
-from gtm_hit.formats.camera_json import load_cameras
+from gtm_hit.formats.calibration.cameras_json import load_cameras
 from gtm_hit.geometry.cylinder import HEIGHTS, RADII
 from gtm_hit.geometry.grid import Grid
 
@@ -31,7 +31,7 @@ FASTEST = 2.5  # m/s; a longer way than that is somebody else
 SEED = 11
 TYPES = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
 PAGE = """<!doctype html><link rel="stylesheet" href="/static/workbench/workbench.css">
-<link rel="stylesheet" href="/static/workbench/time.css"><div id="workbench"></div>"""
+<link rel="stylesheet" href="/static/workbench/frames/time.css"><div id="workbench"></div>"""
 
 PLANS: dict[str, dict[str, Any]] = {
     "copies, arrow keys (the original's way)": {"copies": True},

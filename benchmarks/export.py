@@ -26,7 +26,8 @@ def main(frames: int) -> None:
 def measure(folder: Path, frames: int) -> None:
     from django.core.management import call_command
 
-    from gtm_hit.ops import coverage, exporting
+    from gtm_hit.ops.exports import exporting
+    from gtm_hit.ops.ground import coverage
 
     call_command("migrate", verbosity=0)
     layer = make_layer(frames)
@@ -51,7 +52,7 @@ def measure(folder: Path, frames: int) -> None:
 def make_layer(frames: int):  # type: ignore[no-untyped-def]
     import numpy as np
 
-    from gtm_hit.formats.camera_json import load_cameras
+    from gtm_hit.formats.calibration.cameras_json import load_cameras
     from gtm_hit.models import Annotation, Camera, Dataset, Frame, Layer, LayerFrame
 
     dataset = Dataset.objects.create(slug="benchmark", name="Benchmark")

@@ -1,8 +1,8 @@
 /** Fills in real people between keyframes with the workbench's own modules, and compares with where they were. */
-import { annotation } from "/static/workbench/annotation.js";
-import { fillEdits } from "/static/workbench/keyframes.js";
-import { Scene } from "/static/workbench/scene.js";
-import { Store } from "/static/workbench/store.js";
+import { annotation } from "/static/truth/annotation.js";
+import { fillEdits } from "/static/truth/keyframes.js";
+import { Scene } from "/static/truth/scene.js";
+import { Store } from "/static/truth/store.js";
 
 const NEAR = 0.1; // metres
 

@@ -15,9 +15,9 @@ from PIL import Image
 
 from gtm_hit.demo.render import make_demo_frame
 from gtm_hit.demo.scene import read_scene
-from gtm_hit.formats.camera_json import load_cameras
+from gtm_hit.formats.calibration.cameras_json import load_cameras
 from gtm_hit.geometry.camera import undistort_maps
-from gtm_hit.ops.images import Undistort, derive, remapper
+from gtm_hit.ops.files.images import Undistort, derive, remapper
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 CAMERAS = REPOSITORY / "fixtures" / "wildtrack_cameras.json"

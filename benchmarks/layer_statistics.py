@@ -30,7 +30,7 @@ def prepare(folder: str) -> None:
 
 
 def build() -> None:
-    from gtm_hit.formats.camera_json import load_cameras
+    from gtm_hit.formats.calibration.cameras_json import load_cameras
     from gtm_hit.models import Camera, Dataset, Frame, Layer, LayerFrame
 
     dataset = Dataset.objects.create(slug="long", name="Long")
@@ -92,10 +92,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="layer-statistics-") as folder:
         prepare(folder)
         from gtm_hit.models import Layer
-        from gtm_hit.ops.coverage import table
+        from gtm_hit.ops.ground.coverage import table
         from gtm_hit.ops.quality.comparing import MOST_FRAMES, compare
         from gtm_hit.ops.quality.layer_rows import read_layer
-        from gtm_hit.ops.quality.statistics import ground_coverage, layer_statistics
+        from gtm_hit.ops.quality.statistics.measuring import ground_coverage, layer_statistics
 
         # In a process of its own: what is measured here is the memory of reading, not of making.
         subprocess.run([sys.executable, "-m", "benchmarks.layer_statistics", folder], check=True)

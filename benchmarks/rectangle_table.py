@@ -15,7 +15,7 @@ from statistics import median
 
 import numpy as np
 
-from gtm_hit.formats.camera_json import load_cameras
+from gtm_hit.formats.calibration.cameras_json import load_cameras
 from gtm_hit.geometry.cylinder import Cylinder, FootRule
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.geometry.grid_file import encode

@@ -38,9 +38,10 @@ def build(slug: str, frames: int) -> None:
     """Rows only: images are addressed, and nobody opens them here."""
     import numpy as np
 
-    from gtm_hit.formats.camera_json import load_cameras
+    from gtm_hit.formats.calibration.cameras_json import load_cameras
     from gtm_hit.models import Annotation, Camera, Dataset, Frame, Image, Layer, LayerFrame
-    from gtm_hit.ops import batches, coverage
+    from gtm_hit.ops.ground import coverage
+    from gtm_hit.ops.work import batches
 
     dataset = Dataset.objects.create(slug=slug, name=slug)
     cameras = [
@@ -142,7 +143,7 @@ def timed(calls: list[Any]) -> tuple[int, float]:
 
 def export(slug: str) -> dict[str, float]:
     from gtm_hit.models import Layer
-    from gtm_hit.ops import exporting
+    from gtm_hit.ops.exports import exporting
 
     layer = Layer.objects.select_related("dataset").get(dataset__slug=slug, name="truth")
     folder = Path(os.environ["DATA_DIR"]) / "out"
@@ -174,7 +175,7 @@ def export(slug: str) -> dict[str, float]:
 def import_back(slug: str) -> dict[str, float]:
     """The JSON just exported, as a layer of the same dataset."""
     from gtm_hit.models import Dataset
-    from gtm_hit.ops.annotation_import.layers import AnnotationSource, import_annotations
+    from gtm_hit.ops.layers.importing import AnnotationSource, import_annotations
 
     folder = Path(os.environ["DATA_DIR"]) / "out"
     start, cpu = time.perf_counter(), time.process_time()
@@ -192,7 +193,7 @@ def import_back(slug: str) -> dict[str, float]:
 def quality(slug: str) -> dict[str, float]:
     """The statistics of the layer."""
     from gtm_hit.models import Layer
-    from gtm_hit.ops.quality.statistics import layer_statistics
+    from gtm_hit.ops.quality.statistics.measuring import layer_statistics
 
     layer = Layer.objects.select_related("dataset").get(dataset__slug=slug, name="truth")
     start = time.perf_counter()
@@ -214,12 +215,12 @@ def compare(slug: str) -> dict[str, float]:
 def release(slug: str) -> dict[str, float]:
     """In the formats releases have by default."""
     from gtm_hit.models import Layer
-    from gtm_hit.ops import releases
+    from gtm_hit.ops.releases import releasing
 
     layer = Layer.objects.select_related("dataset").get(dataset__slug=slug, name="truth")
     partial = Path(os.environ["DATA_DIR"]) / "exports" / "release.partial-0-0"
     start, cpu = time.perf_counter(), time.process_time()
-    releases.make_release(releases.Order(layer, "For research only."), partial, lambda *_: None)
+    releasing.make_release(releasing.Order(layer, "For research only."), partial, lambda *_: None)
     return {
         "seconds": time.perf_counter() - start,
         "seconds, processor time": time.process_time() - cpu,

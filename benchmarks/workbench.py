@@ -83,7 +83,7 @@ PROGRAM_BYTES = """
 SEED = """
 import sys
 from gtm_hit.models import Layer
-from gtm_hit.ops.annotations import save_frame
+from gtm_hit.ops.frames.saving import save_frame
 from tests.browser import street
 import uuid, json
 def rows(places):

@@ -9,45 +9,41 @@ from celery.signals import worker_ready
 from django.utils import timezone
 
 from gtm_hit.models import Job
-from gtm_hit.ops import (
-    assignments,
-    export_expiry,
-    exporting,
-    import_jobs,
-    jobs,
-    picture_cleanup,
-    releases,
-    uploads,
-)
-from gtm_hit.ops.annotation_import import job as annotation_job
-from gtm_hit.ops.annotation_import import unfinished
 from gtm_hit.ops.calibration import job as calibration_job
+from gtm_hit.ops.datasets import job
+from gtm_hit.ops.exports import expiry, exporting
+from gtm_hit.ops.files import picture_cleanup, sources
+from gtm_hit.ops.jobs import queue
+from gtm_hit.ops.layers import job as annotation_job
+from gtm_hit.ops.layers import unfinished
+from gtm_hit.ops.releases import releasing
+from gtm_hit.ops.work import assignments
 
-OPERATIONS: dict[str, jobs.Operation] = {
+OPERATIONS: dict[str, queue.Operation] = {
     Job.Kind.EXPORT_LAYER: exporting.run,
-    Job.Kind.IMPORT_DATASET: import_jobs.run_import,
-    Job.Kind.IMPORT_VIDEOS: import_jobs.run_videos,
+    Job.Kind.IMPORT_DATASET: job.run_import,
+    Job.Kind.IMPORT_VIDEOS: job.run_videos,
     Job.Kind.IMPORT_ANNOTATIONS: annotation_job.run,
-    Job.Kind.MAKE_RELEASE: releases.run,
+    Job.Kind.MAKE_RELEASE: releasing.run,
     Job.Kind.REPLACE_CALIBRATION: calibration_job.run,
 }
 
 
 @shared_task
 def run_job(job_id: int) -> None:
-    jobs.run(job_id, OPERATIONS)
+    queue.run(job_id, OPERATIONS)
 
 
 @shared_task
 def requeue_lost_jobs() -> None:
-    jobs.requeue_lost(timezone.now())
+    queue.requeue_lost(timezone.now())
     exporting.remove_dead_partials()
-    uploads.remove_leftovers()
+    sources.remove_leftovers()
 
 
 @shared_task
 def expire_exports() -> None:
-    export_expiry.expire(timezone.now())
+    expiry.expire(timezone.now())
     unfinished.remove_abandoned(timezone.now())
 
 

@@ -10,12 +10,22 @@ import cv2
 import numpy as np
 from PIL import Image
 
-from gtm_hit.formats.calibration_xml import Extrinsic, Intrinsic, Style, extrinsic_xml, intrinsic_xml
-from gtm_hit.formats.wildtrack_json import FrameAnnotations, PersonPosition, write_frame
+from gtm_hit.formats.annotations.wildtrack_json import (
+    FrameAnnotations,
+    PersonPosition,
+    write_frame,
+)
+from gtm_hit.formats.calibration.wildtrack_xml import (
+    Extrinsic,
+    Intrinsic,
+    Style,
+    extrinsic_xml,
+    intrinsic_xml,
+)
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.geometry.grid import Grid
-from gtm_hit.ops.importing.options import ImportOptions, SceneValues
+from gtm_hit.ops.datasets.options import ImportOptions, SceneValues
 
 WIDTH, HEIGHT = 320, 240
 GRID = Grid(80, 60, 0.1, -4.0, -3.0)

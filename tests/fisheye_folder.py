@@ -14,9 +14,9 @@ from gtm_hit.demo.people import Cast, moment
 from gtm_hit.demo.render import Truth, truth
 from gtm_hit.demo.scene import Scene, read_scene
 from gtm_hit.demo.view import View, photograph
-from gtm_hit.formats.camera_json import save_cameras
+from gtm_hit.formats.calibration.cameras_json import save_cameras
 from gtm_hit.geometry.camera import Camera, CameraModel, normalise
-from gtm_hit.ops.importing.options import ImportOptions, SceneValues
+from gtm_hit.ops.datasets.options import ImportOptions, SceneValues
 from tests.geometry.scenes import wildtrack_cameras
 
 SIZE = (960, 540)

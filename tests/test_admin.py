@@ -12,7 +12,8 @@ from django.test import Client
 from django.test.utils import CaptureQueriesContext
 
 from gtm_hit.models import Annotation, Assignment, Dataset, Job, Save
-from gtm_hit.ops import assignments, batches, jobs
+from gtm_hit.ops.jobs import queue
+from gtm_hit.ops.work import assignments, batches
 from tests.work_scene import do_frames, make_dataset, make_layer, make_worker, row, save
 
 MODELS = sorted(model.__name__.lower() for model in apps.get_app_config("gtm_hit").get_models(False))
@@ -38,7 +39,7 @@ def grow(dataset: Dataset, count: int) -> None:
         batches.make_batches(other)
         do_frames(assignments.claim(make_worker(name), other))
         save(make_layer(other), other.frames.get(), [row(number + 1)])
-        jobs.create(Job.Kind.EXPORT_LAYER, other, {}, User.objects.create_user(name))
+        queue.create(Job.Kind.EXPORT_LAYER, other, {}, User.objects.create_user(name))
 
 
 def test_every_model_has_its_place_in_the_admin(db: None) -> None:

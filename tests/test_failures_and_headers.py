@@ -18,8 +18,9 @@ from django.test import Client
 from django.urls import set_script_prefix
 
 from annotator.masked_log import MaskingFormatter
-from gtm_hit.ops import assignments, tokens, uploads
-from gtm_hit.ops.batches import make_batches
+from gtm_hit.ops.files import sources
+from gtm_hit.ops.work import assignments, links
+from gtm_hit.ops.work.batches import make_batches
 from tests.conftest import REPOSITORY
 from tests.work_scene import make_dataset, make_layer, make_worker
 
@@ -71,8 +72,8 @@ def full_database(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_given: Any, **_named: Any) -> None:
         raise OperationalError("database or disk is full")
 
-    monkeypatch.setattr("gtm_hit.api.staff.dataset_or_404", fail)
-    monkeypatch.setattr("gtm_hit.api.datasets.dataset_or_404", fail)
+    monkeypatch.setattr("gtm_hit.api.common.staff.dataset_or_404", fail)
+    monkeypatch.setattr("gtm_hit.api.datasets.listing.dataset_or_404", fail)
 
 
 def test_a_full_disk_is_called_so_by_rest(
@@ -164,7 +165,7 @@ def test_a_large_upload_is_kept_without_a_second_copy(settings: Any, tmp_path: P
     with zipfile.ZipFile(upload, "w") as archive:
         archive.writestr("a.json", "[]")
     arrived = Path(upload.temporary_file_path()).stat().st_ino
-    kept = uploads.keep(upload)
+    kept = sources.keep(upload)
     assert kept.path.stat().st_ino == arrived
     upload.close()
     assert zipfile.is_zipfile(kept.path)
@@ -192,7 +193,7 @@ def test_every_address_lies_below_the_path_of_the_server(settings: Any, staff: C
     batch = make_batches(layer.dataset)
     worker = make_worker()
     assignment = assignments.claim(worker, layer.dataset)
-    token = tokens.assignment_token(assignment)
+    token = links.assignment_token(assignment)
     assert batch
     for path in (
         *("/", "/login/", "/datasets/", "/imports/", "/imports/videos/"),

@@ -13,7 +13,7 @@ import pytest
 
 from tests.conftest import REPOSITORY
 
-OURS = ("geometry/", "site/", "workbench/")
+OURS = ("base/", "compare/", "geometry/", "saving/", "site/", "tables/", "truth/", "views/", "workbench/")
 IMPORT = re.compile(r"""(?:from|import|import\.meta\.resolve)\s*\(?["'](\.[^"']+)["']""")
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from django.conf import settings
 
 from gtm_hit.models import Dataset, Layer
-from gtm_hit.ops import tutorial
+from gtm_hit.ops.tutorial import lesson
 from tests.work_scene import make_dataset, make_layer, row, save
 
 START = {1: 8_100, 2: 8_300, 3: 151_900, 4: 152_100, 5: 80_000}
@@ -22,19 +22,19 @@ def make_tutorial(images: bool = False) -> Dataset:
     return dataset
 
 
-def solved(step: tutorial.Step) -> tuple[int, list[dict[str, Any]]]:
+def solved(step: lesson.Step) -> tuple[int, list[dict[str, Any]]]:
     """Frame number and annotations of somebody who does the step right, and only that step."""
-    loaded = tutorial.load()
+    loaded = lesson.load()
     exercise = loaded.exercise
-    index = 1 if step is tutorial.Step.NEXT else 0
+    index = 1 if step is lesson.Step.NEXT else 0
     state = loaded.state(index)
     rows = {one["person"]: one for one in state.annotations}
-    if step is tutorial.Step.PLACE:
+    if step is lesson.Step.PLACE:
         rows[exercise.next_person] = row(exercise.next_person, exercise.truth[0][exercise.missing])
-    if step is tutorial.Step.CORRECT:
+    if step is lesson.Step.CORRECT:
         rows[exercise.shifted] = row(exercise.shifted, exercise.truth[0][exercise.shifted])
-    if step is tutorial.Step.REMOVE:
+    if step is lesson.Step.REMOVE:
         del rows[exercise.invented]
-    if step is tutorial.Step.NEXT:
+    if step is lesson.Step.NEXT:
         rows |= {person: row(person, exercise.truth[1][person]) for person in exercise.carried}
     return state.number, list(rows.values())

@@ -8,7 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from gtm_hit.ops.videos.options import VideoOptions, VideoSource
+from gtm_hit.ops.datasets.videos.options import VideoOptions, VideoSource
 from tests.dataset_folder import NAMES, VALUES, add_calibrations, options
 
 BITS = 10

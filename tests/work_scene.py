@@ -7,7 +7,8 @@ import uuid
 from typing import Any
 
 from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, Layer, Worker
-from gtm_hit.ops import annotations, assignments
+from gtm_hit.ops.frames import saving
+from gtm_hit.ops.work import assignments
 
 MATRIX = [[1000.0, 0.0, 960.0], [0.0, 1000.0, 540.0], [0.0, 0.0, 1.0]]
 
@@ -83,13 +84,13 @@ def save(layer: Layer, frame: Frame, rows: list[dict[str, Any]], revision: int =
     """Save with a fresh id, by nobody unless `author` is given."""
     author = values.pop("author", None)
     save_id = values.pop("save_id", None) or uuid.uuid4()
-    return annotations.save_frame(layer, frame, author, save_id, revision, rows, **values)
+    return saving.save_frame(layer, frame, author, save_id, revision, rows, **values)
 
 
 def do_frames(assignment: Assignment) -> None:
     """Every frame of the batch done, nobody in those that were never saved."""
     for frame in assignment.batch.frames.all():
-        state = annotations.read_frame(assignment.layer, frame)
+        state = saving.read_frame(assignment.layer, frame)
         if not state.done:
             people = state.annotations
             save(

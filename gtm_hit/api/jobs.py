@@ -18,16 +18,26 @@ from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api.refusals import refusal
-from gtm_hit.api.staff import ASKS, READS, Conflict, Pages, StaffView, answers, asked, caller
+from gtm_hit.api.common.refusals import refusal
+from gtm_hit.api.common.staff import (
+    ASKS,
+    READS,
+    Conflict,
+    Pages,
+    StaffView,
+    answers,
+    asked,
+    caller,
+)
 from gtm_hit.models import ApiToken, Job
-from gtm_hit.ops import export_expiry, exporting, overview
-from gtm_hit.ops import jobs as job_ops
-from gtm_hit.ops.export_expiry import Removed
+from gtm_hit.ops import overview
+from gtm_hit.ops.exports import expiry, exporting
+from gtm_hit.ops.exports.expiry import Removed
+from gtm_hit.ops.jobs import queue as job_ops
 
 GONE = {
-    export_expiry.Removed.EXPIRED: gettext_lazy("This export has expired; retry the job to make it again."),
-    export_expiry.Removed.DELETED: gettext_lazy(
+    expiry.Removed.EXPIRED: gettext_lazy("This export has expired; retry the job to make it again."),
+    expiry.Removed.DELETED: gettext_lazy(
         "The files of this export were deleted; retry the job to make it again."
     ),
 }
@@ -88,7 +98,7 @@ class JobShape(serializers.ModelSerializer[Job]):
         serializers.DateTimeField(allow_null=True, help_text="when an export's files will be removed")
     )
     def get_expires_at(self, job: Job) -> datetime | None:
-        return export_expiry.expires_at(job)
+        return expiry.expires_at(job)
 
     @extend_schema_field(
         serializers.ChoiceField(
@@ -96,7 +106,7 @@ class JobShape(serializers.ModelSerializer[Job]):
         )
     )
     def get_removed(self, job: Job) -> str | None:
-        return export_expiry.removed(job)
+        return expiry.removed(job)
 
 
 class JobsQuery(serializers.Serializer[Any]):
@@ -196,7 +206,7 @@ class DeleteFiles(JobAction):
         responses=answers(200, JobShape, {**READS, 409: refusal("no_files")}),
     )
     def post(self, request: Request, pk: int) -> Response:
-        if not export_expiry.delete(job_or_404(pk)):
+        if not expiry.delete(job_or_404(pk)):
             raise NoFiles(_("This job has no files to delete."))
         return Response(JobShape(job_or_404(pk)).data)
 
@@ -220,7 +230,7 @@ class DownloadJob(Download):
     )
     def get(self, request: Request, pk: int) -> FileResponse:
         job = job_or_404(pk)
-        if reason := export_expiry.removed(job):
+        if reason := expiry.removed(job):
             raise Gone(GONE[reason])
         export = exporting.finished(job)
         if export is None:

@@ -13,9 +13,8 @@ from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api.jobs import Download, JobShape, started
-from gtm_hit.api.refusals import valid
-from gtm_hit.api.staff import (
+from gtm_hit.api.common.refusals import valid
+from gtm_hit.api.common.staff import (
     READS,
     WRITES,
     Pages,
@@ -27,9 +26,11 @@ from gtm_hit.api.staff import (
     layer_named,
     layer_or_404,
 )
+from gtm_hit.api.jobs import Download, JobShape, started
 from gtm_hit.models import ApiToken, Release
-from gtm_hit.ops import exporting, releases
-from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, FORMATS
+from gtm_hit.ops.exports import exporting
+from gtm_hit.ops.exports.formats.registry import DEFAULT_FORMATS, FORMATS
+from gtm_hit.ops.releases import releasing
 
 
 class ReleaseShape(serializers.ModelSerializer[Release]):
@@ -58,9 +59,9 @@ class ExportSerializer(serializers.Serializer[Any]):
 
 class MakeReleaseSerializer(serializers.Serializer[Any]):
     layer = serializers.CharField(max_length=120, help_text="name of a layer")
-    licence = serializers.CharField(max_length=releases.MOST_LICENCE, help_text="the whole text")
+    licence = serializers.CharField(max_length=releasing.MOST_LICENCE, help_text="the whole text")
     title = serializers.CharField(max_length=200, default="", allow_blank=True)
-    formats = formats_field(releases.FORMATS)
+    formats = formats_field(releasing.FORMATS)
 
 
 class Exports(StaffView):
@@ -87,7 +88,7 @@ class Releases(StaffView, ListAPIView[Release]):
     write_scope = ApiToken.Scope.RELEASE
 
     def get_queryset(self) -> QuerySet[Release]:
-        return releases.releases(dataset_or_404(self.kwargs["slug"]))
+        return releasing.releases(dataset_or_404(self.kwargs["slug"]))
 
     @extend_schema(
         operation_id="releases",
@@ -113,12 +114,12 @@ class Releases(StaffView, ListAPIView[Release]):
         dataset = dataset_or_404(slug)
         wanted = valid(MakeReleaseSerializer(data=request.data))
         layer = layer_named(dataset, wanted["layer"], "layer")
-        order = releases.Order(
+        order = releasing.Order(
             layer, wanted["licence"], wanted["title"], tuple(wanted["formats"]), caller(request)
         )
         try:
-            return started(releases.start(order))
-        except releases.ReleaseError as error:
+            return started(releasing.start(order))
+        except releasing.ReleaseError as error:
             raise invalid("", error) from error
 
 
@@ -139,7 +140,7 @@ class DownloadRelease(Download):
         responses={(200, "application/zip"): OpenApiTypes.BINARY, **READS},
     )
     def get(self, request: Request, slug: str, number: int) -> FileResponse:
-        archive = releases.archive_of(release_or_404(slug, number))
+        archive = releasing.archive_of(release_or_404(slug, number))
         if not archive.is_file():
             raise Http404
         return FileResponse(archive.open("rb"), as_attachment=True, filename=archive.name)
@@ -151,11 +152,11 @@ class ReleaseFile(Download):
         summary="One of the files worth having without the zip",
         description="README, licence, changes since the release before, provenance of every annotation, "
         "manifest with the digest of every file.",
-        parameters=[OpenApiParameter("name", str, OpenApiParameter.PATH, enum=list(releases.PARTS))],
+        parameters=[OpenApiParameter("name", str, OpenApiParameter.PATH, enum=list(releasing.PARTS))],
         responses={(200, "application/octet-stream"): OpenApiTypes.BINARY, **READS},
     )
     def get(self, request: Request, slug: str, number: int, name: str) -> FileResponse:
-        kept = releases.part_of(release_or_404(slug, number), name)
+        kept = releasing.part_of(release_or_404(slug, number), name)
         if kept is None:
             raise Http404
         return FileResponse(
@@ -164,7 +165,7 @@ class ReleaseFile(Download):
 
 
 def release_or_404(slug: str, number: int) -> Release:
-    found = releases.releases(dataset_or_404(slug)).filter(number=number).first()
+    found = releasing.releases(dataset_or_404(slug)).filter(number=number).first()
     if found is None:
         raise Http404
     return found

@@ -7,28 +7,19 @@ from django.views.decorators.gzip import gzip_page
 from drf_spectacular.views import SpectacularAPIView
 
 # Importing it tells drf-spectacular about the tokens.
-from gtm_hit.api import (
-    calibrations,
-    datasets,
-    frames,
-    imports,
-    jobs,
-    quality,
-    releases,
-    schema,  # noqa: F401
-    statistics,
-    tutorial,
-    videos,
-    work,
-)
-from gtm_hit.api.authentication import BearerAuthentication, StaffMay, StaffSession
-from gtm_hit.api.docs import DocsView
-from gtm_hit.api.grids import GridView
-from gtm_hit.api.images import ImageView
-from gtm_hit.api.missing import MissingView
-from gtm_hit.api.places import IN_LAYER, layer_start_place
-from gtm_hit.api.rectangles import RectanglesView
-from gtm_hit.api.submission import SubmitView
+from gtm_hit.api import calibration, jobs, releases, work
+from gtm_hit.api.common import schema  # noqa: F401
+from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, StaffSession
+from gtm_hit.api.common.docs import DocsView
+from gtm_hit.api.common.missing import MissingView
+from gtm_hit.api.datasets import importing, listing, videos
+from gtm_hit.api.quality import comparing, statistics
+from gtm_hit.api.workbench import frames, tutorial
+from gtm_hit.api.workbench.grids import GridView
+from gtm_hit.api.workbench.images import ImageView
+from gtm_hit.api.workbench.places import IN_LAYER, layer_start_place
+from gtm_hit.api.workbench.rectangles import RectanglesView
+from gtm_hit.api.workbench.submission import SubmitView
 
 staff: dict[str, Any] = {
     "authentication_classes": [BearerAuthentication, StaffSession],
@@ -67,29 +58,29 @@ learning = [
     path("done/", tutorial.TutorialDone.as_view()),
 ]
 one_layer: list[URLPattern | URLResolver] = [
-    path("", datasets.OneLayer.as_view()),
-    path("annotations/", datasets.Annotations.as_view()),
+    path("", listing.OneLayer.as_view()),
+    path("annotations/", listing.Annotations.as_view()),
     path("statistics/", statistics.Statistics.as_view()),
     path("statistics/numbers.csv", statistics.StatisticsTable.as_view()),
     path("statistics/<slug:figure>.<slug:kind>", statistics.StatisticsFigure.as_view()),
     path("exports/", releases.Exports.as_view()),
 ]
 one_dataset: list[URLPattern | URLResolver] = [
-    path("", datasets.OneDataset.as_view()),
-    path("cameras/", datasets.Cameras.as_view()),
-    path("frames/", datasets.Frames.as_view()),
-    path("layers/", datasets.Layers.as_view()),
+    path("", listing.OneDataset.as_view()),
+    path("cameras/", listing.Cameras.as_view()),
+    path("frames/", listing.Frames.as_view()),
+    path("layers/", listing.Layers.as_view()),
     path("layers/<str:name>/", include(one_layer)),
-    path("evaluation/", quality.Evaluation.as_view()),
-    path("evaluation/frames/", quality.EvaluationFrames.as_view()),
-    path("evaluation/frames/<int:number>/", quality.EvaluationFrame.as_view()),
-    path("agreement/", quality.Agreement.as_view()),
-    path("calibrations/", calibrations.Calibrations.as_view()),
-    path("calibrations/versions/", calibrations.Versions.as_view()),
-    path("calibrations/versions/<int:number>/", calibrations.OneVersion.as_view()),
-    path("calibrations/<int:pk>/", calibrations.OneCalibration.as_view()),
-    path("calibrations/<int:pk>/confirm/", calibrations.ConfirmCalibration.as_view()),
-    path("annotation-imports/", imports.AnnotationImports.as_view()),
+    path("evaluation/", comparing.Evaluation.as_view()),
+    path("evaluation/frames/", comparing.EvaluationFrames.as_view()),
+    path("evaluation/frames/<int:number>/", comparing.EvaluationFrame.as_view()),
+    path("agreement/", comparing.Agreement.as_view()),
+    path("calibrations/", calibration.Calibrations.as_view()),
+    path("calibrations/versions/", calibration.Versions.as_view()),
+    path("calibrations/versions/<int:number>/", calibration.OneVersion.as_view()),
+    path("calibrations/<int:pk>/", calibration.OneCalibration.as_view()),
+    path("calibrations/<int:pk>/confirm/", calibration.ConfirmCalibration.as_view()),
+    path("annotation-imports/", importing.AnnotationImports.as_view()),
     path("batches/", work.Batches.as_view()),
     path("link/", work.Link.as_view()),
     path("progress/", work.Progress.as_view()),
@@ -100,13 +91,13 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("releases/<int:number>/files/<str:name>", releases.ReleaseFile.as_view()),
 ]
 scripts: list[URLPattern | URLResolver] = [
-    path("datasets/", datasets.Datasets.as_view()),
+    path("datasets/", listing.Datasets.as_view()),
     path("datasets/<slug:slug>/", include(one_dataset)),
-    path("sources/", imports.Sources.as_view()),
-    path("uploads/", imports.Uploads.as_view()),
-    path("imports/", imports.Imports.as_view()),
+    path("sources/", importing.Sources.as_view()),
+    path("uploads/", importing.Uploads.as_view()),
+    path("imports/", importing.Imports.as_view()),
     path("video-imports/", videos.VideoImports.as_view()),
-    path("evaluations/", quality.TextFiles.as_view()),
+    path("evaluations/", comparing.TextFiles.as_view()),
     path("jobs/", jobs.Jobs.as_view()),
     path("jobs/<int:pk>/", jobs.OneJob.as_view()),
     path("jobs/<int:pk>/cancel/", jobs.CancelJob.as_view()),

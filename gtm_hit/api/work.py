@@ -13,11 +13,22 @@ from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api.fields import LARGEST, StrictBooleanField
-from gtm_hit.api.refusals import valid
-from gtm_hit.api.staff import ASKS, READS, WRITES, Pages, StaffView, answers, asked, dataset_or_404, invalid
+from gtm_hit.api.common.fields import LARGEST, StrictBooleanField
+from gtm_hit.api.common.refusals import valid
+from gtm_hit.api.common.staff import (
+    ASKS,
+    READS,
+    WRITES,
+    Pages,
+    StaffView,
+    answers,
+    asked,
+    dataset_or_404,
+    invalid,
+)
 from gtm_hit.models import ApiToken, Assignment, Batch, Dataset
-from gtm_hit.ops import batches, entry_links, overview, tokens, workers
+from gtm_hit.ops import overview
+from gtm_hit.ops.work import batches, entry_links, links, workers
 
 
 class BatchShape(serializers.ModelSerializer[Batch]):
@@ -173,9 +184,9 @@ class Link(StaffView):
     def answer(
         self, request: Request, dataset: Dataset, platform: str, external_id: str | None = None
     ) -> Response:
-        token = tokens.entry_token(dataset, platform, external_id)
+        token = links.entry_token(dataset, platform, external_id)
         link = request.build_absolute_uri(reverse("join", args=[token]))
-        return Response({"link": link, "closed": tokens.read_entry(token).closed})
+        return Response({"link": link, "closed": links.read_entry(token).closed})
 
 
 class Progress(StaffView):

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from gtm_hit.formats.calibration_files import CalibrationFiles, find_calibrations
+from gtm_hit.formats.calibration.files import CalibrationFiles, find_calibrations
 from gtm_hit.formats.dataset_folder import DatasetFolder
 from gtm_hit.formats.problems import ProblemList
 

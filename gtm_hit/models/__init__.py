@@ -2,11 +2,11 @@ from __future__ import annotations
 
 from gtm_hit.models.access import Attempt, EntryLink
 from gtm_hit.models.annotation import Annotation, AppendOnlyError, Layer, LayerFrame, Save
+from gtm_hit.models.api_token import ApiToken
 from gtm_hit.models.calibration import Calibration
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
 from gtm_hit.models.release import Release
-from gtm_hit.models.token import ApiToken
 from gtm_hit.models.work import Assignment, Batch, Worker
 
 __all__ = [

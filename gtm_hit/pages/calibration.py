@@ -18,12 +18,12 @@ from gtm_hit.models import Dataset, Job
 from gtm_hit.ops import overview
 from gtm_hit.ops.calibration import job as calibration_job
 from gtm_hit.ops.calibration import versions
+from gtm_hit.ops.calibration.cameras import UNITS
 from gtm_hit.ops.calibration.reading import MOST_BYTES, read_upload
 from gtm_hit.ops.calibration.replacing import ReplacementError
-from gtm_hit.ops.importing.calibrations import UNITS
-from gtm_hit.pages.access import StaffRequest, staff_only
-from gtm_hit.pages.datasets import dataset_or_404
-from gtm_hit.pages.uploads import takes_uploads
+from gtm_hit.pages.common.access import StaffRequest, staff_only
+from gtm_hit.pages.common.uploads import takes_uploads
+from gtm_hit.pages.datasets.listing import dataset_or_404
 
 ROWS_SHOWN = 20
 

@@ -11,9 +11,10 @@ from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_POST, require_safe
 
 from gtm_hit.models import Job
-from gtm_hit.ops import export_expiry, exporting, overview
-from gtm_hit.ops import jobs as job_ops
-from gtm_hit.pages.access import StaffRequest, staff_only
+from gtm_hit.ops import overview
+from gtm_hit.ops.exports import expiry, exporting
+from gtm_hit.ops.jobs import queue as job_ops
+from gtm_hit.pages.common.access import StaffRequest, staff_only
 
 ROWS_PER_PAGE = 50
 EXPORTS = {Job.Kind.EXPORT_LAYER, Job.Kind.MAKE_RELEASE}
@@ -35,8 +36,8 @@ def job(request: HttpRequest, pk: int) -> HttpResponse:
         "job": shown,
         "percent": percent(shown),
         "export": export,
-        "removed": export_expiry.removed(shown),
-        "expires_at": export_expiry.expires_at(shown),
+        "removed": expiry.removed(shown),
+        "expires_at": expiry.expires_at(shown),
         "keep_days": settings.EXPORT_KEEP_DAYS,
         "digests": export.files[:DIGESTS_SHOWN] if export else [],
         "more_digests": max(len(export.files) - DIGESTS_SHOWN, 0) if export else 0,
@@ -65,7 +66,7 @@ def retry(request: StaffRequest, pk: int) -> HttpResponse:
 @staff_only
 def download(request: HttpRequest, pk: int) -> HttpResponse | FileResponse:
     shown = job_or_404(pk)
-    if export_expiry.removed(shown):
+    if expiry.removed(shown):
         return redirect("job", pk=pk)  # which says why, and offers to make it again
     export = exporting.finished(shown)
     if export is None:
@@ -76,7 +77,7 @@ def download(request: HttpRequest, pk: int) -> HttpResponse | FileResponse:
 @require_POST
 @staff_only
 def delete_files(request: HttpRequest, pk: int) -> HttpResponse:
-    if not export_expiry.delete(job_or_404(pk)):
+    if not expiry.delete(job_or_404(pk)):
         messages.warning(request, _("This job has no files to delete."))
     return redirect("job", pk=pk)
 

@@ -13,11 +13,12 @@ from django.utils.translation import gettext_lazy
 from django.views.decorators.http import require_http_methods, require_safe
 
 from gtm_hit.models import Job, Layer, Release
-from gtm_hit.ops import overview, releases
-from gtm_hit.ops.export_formats.registry import FORMATS
-from gtm_hit.ops.quality.statistics_figures import FIGURES
-from gtm_hit.pages.access import StaffRequest, staff_only
-from gtm_hit.pages.datasets import dataset_or_404
+from gtm_hit.ops import overview
+from gtm_hit.ops.exports.formats.registry import FORMATS
+from gtm_hit.ops.quality.statistics.figures import FIGURES
+from gtm_hit.ops.releases import releasing
+from gtm_hit.pages.common.access import StaffRequest, staff_only
+from gtm_hit.pages.datasets.listing import dataset_or_404
 
 ROWS_PER_PAGE = 50
 FILES_SHOWN = 200
@@ -31,14 +32,14 @@ class ReleaseForm(forms.Form):
     title = forms.CharField(label=gettext_lazy("Title"), max_length=200, required=False)
     licence = forms.CharField(
         label=gettext_lazy("Licence text"),
-        max_length=releases.MOST_LICENCE,
+        max_length=releasing.MOST_LICENCE,
         widget=forms.Textarea(attrs={"rows": 8}),
     )
     formats = forms.MultipleChoiceField(
         label=gettext_lazy("Formats"),
         choices=[(name, each.label) for name, each in FORMATS.items()],
         widget=forms.CheckboxSelectMultiple,
-        initial=releases.FORMATS,
+        initial=releasing.FORMATS,
     )
 
     def __init__(self, layers: object, *args: object, **kwargs: object) -> None:
@@ -56,14 +57,14 @@ def dataset_releases(request: StaffRequest, slug: str) -> HttpResponse:
     form = ReleaseForm(layers, request.POST or None, initial={"layer": truth.name if truth else None})
     if request.method == "POST" and form.is_valid():
         chosen = form.cleaned_data
-        order = releases.Order(
+        order = releasing.Order(
             chosen["layer"], chosen["licence"], chosen["title"], chosen["formats"], request.user
         )
         try:
-            return redirect("job", pk=releases.start(order).pk)
-        except releases.ReleaseError as error:
+            return redirect("job", pk=releasing.start(order).pk)
+        except releasing.ReleaseError as error:
             form.add_error(None, str(error))
-    page = Paginator(releases.releases(dataset), ROWS_PER_PAGE).get_page(request.GET.get("page"))
+    page = Paginator(releasing.releases(dataset), ROWS_PER_PAGE).get_page(request.GET.get("page"))
     made = overview.jobs().filter(dataset=dataset, kind=Job.Kind.MAKE_RELEASE).exclude(state=Job.State.DONE)
     context = {
         "section": "datasets",
@@ -82,7 +83,7 @@ def dataset_releases(request: StaffRequest, slug: str) -> HttpResponse:
 def release(request: HttpRequest, slug: str, number: int) -> HttpResponse:
     found = _release_or_404(slug, number)
     files = sorted(found.manifest["files"].items())
-    archive = releases.archive_of(found)
+    archive = releasing.archive_of(found)
     context = {
         "section": "datasets",
         "tab": "releases",
@@ -90,9 +91,9 @@ def release(request: HttpRequest, slug: str, number: int) -> HttpResponse:
         "release": found,
         "counts": found.manifest["counts"],
         "parameters": found.manifest["parameters"],
-        "licence": releases.text_of(found, "LICENSE"),
+        "licence": releasing.text_of(found, "LICENSE"),
         # Drawn by our own figures, so they may be part of the page and follow its colours.
-        "figures": [mark_safe(drawn) for name in FIGURES if (drawn := releases.figure_of(found, name))],
+        "figures": [mark_safe(drawn) for name in FIGURES if (drawn := releasing.figure_of(found, name))],
         "archive_bytes": archive.stat().st_size if archive.is_file() else None,
         "files": files[:FILES_SHOWN],
         "more_files": max(len(files) - FILES_SHOWN, 0),
@@ -104,7 +105,7 @@ def release(request: HttpRequest, slug: str, number: int) -> HttpResponse:
 @require_safe
 @staff_only
 def download(request: HttpRequest, slug: str, number: int) -> HttpResponse | FileResponse:
-    archive = releases.archive_of(_release_or_404(slug, number))
+    archive = releasing.archive_of(_release_or_404(slug, number))
     if not archive.is_file():
         raise Http404(_("The files of this release are not on this server."))
     return FileResponse(archive.open("rb"), as_attachment=True, filename=archive.name)
@@ -115,7 +116,7 @@ def download(request: HttpRequest, slug: str, number: int) -> HttpResponse | Fil
 def part(request: HttpRequest, slug: str, number: int, name: str) -> HttpResponse | FileResponse:
     """One of the few files worth having without the archive."""
     found = _release_or_404(slug, number)
-    kept = releases.part_of(found, name)
+    kept = releasing.part_of(found, name)
     if kept is None:
         raise Http404(_("This release has no such file on this server."))
     return FileResponse(kept.open("rb"), as_attachment=True, filename=name)

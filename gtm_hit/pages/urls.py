@@ -2,36 +2,27 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-from gtm_hit.pages import (
-    annotation_import,
-    batches,
-    calibration,
-    compare,
-    datasets,
-    home,
-    imports,
-    jobs,
-    layers,
-    releases,
-    statistics,
-    text_files,
-    tokens,
-    work,
-)
+from gtm_hit.pages import api_tokens, calibration, home, jobs, releases
+from gtm_hit.pages.datasets import importing as dataset_imports
+from gtm_hit.pages.datasets import listing as datasets
+from gtm_hit.pages.layers import importing as annotation_imports
+from gtm_hit.pages.layers import listing as layers
+from gtm_hit.pages.quality import comparing, statistics, text_files
+from gtm_hit.pages.work import batches, workplace
 
 urlpatterns: list[URLPattern | URLResolver] = [
     *home.urlpatterns,
     *datasets.urlpatterns,
     *batches.urlpatterns,
     *layers.urlpatterns,
-    *annotation_import.urlpatterns,
+    *annotation_imports.urlpatterns,
     *releases.urlpatterns,
     *statistics.urlpatterns,
-    *compare.urlpatterns,
+    *comparing.urlpatterns,
     *text_files.urlpatterns,
     *jobs.urlpatterns,
-    *imports.urlpatterns,
+    *dataset_imports.urlpatterns,
     *calibration.urlpatterns,
-    *tokens.urlpatterns,
-    *work.urlpatterns,
+    *api_tokens.urlpatterns,
+    *workplace.urlpatterns,
 ]

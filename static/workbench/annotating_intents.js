@@ -1,4 +1,4 @@
-import { Intents } from "./intents.js";
+import { Intents } from "../views/intents.js";
 
 const DOUBLE = 1000; // ms; the longest double click that systems offer is shorter
 

@@ -1,9 +1,9 @@
-import { carriedOf } from "./annotation.js";
-import { element, setText } from "./dom.js";
-import { titleFor } from "./keys.js";
-import { gettext, ngettext } from "./messages.js";
-import { saveWords } from "./save_words.js";
-import { paintSoon } from "./scheduler.js";
+import { carriedOf } from "../truth/annotation.js";
+import { element, setText } from "../base/dom.js";
+import { titleFor } from "./keys/keys.js";
+import { gettext, ngettext } from "../base/messages.js";
+import { saveWords } from "../saving/save_words.js";
+import { paintSoon } from "../base/repaint.js";
 
 const THEME_KEY = "gtm-theme"; // shared with the ordinary pages
 

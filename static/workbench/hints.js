@@ -1,7 +1,7 @@
-import { carriedOf } from "./annotation.js";
-import { element } from "./dom.js";
-import { keyFor } from "./keys.js";
-import { gettext } from "./messages.js";
+import { carriedOf } from "../truth/annotation.js";
+import { element } from "../base/dom.js";
+import { keyFor } from "./keys/keys.js";
+import { gettext } from "../base/messages.js";
 
 const SHOWN = 20_000; // ms
 

@@ -1,17 +1,17 @@
-import { fetchedDialog } from "./fetched.js";
-import { gettext } from "./messages.js";
-import { saveWords } from "./save_words.js";
+import { fetchedDialog } from "../base/lazy.js";
+import { gettext } from "../base/messages.js";
+import { saveWords } from "../saving/save_words.js";
 
 /** What keys and buttons do that no other topic does: frames, zoom, display, dialogs, the way out. */
 export class KeyActions {
   /**
-   * @param {{intents: import("./intents.js").Intents, pointer: import("./pointer.js").Pointer,
+   * @param {{intents: import("../views/intents.js").Intents, pointer: import("../views/pointer.js").Pointer,
    *          setControls: (on: boolean) => void}} parts the pointer's place and meaning are for keys that do what a click does
    */
   constructor({ store, saver, settings, panes, notices, walk, guard, heads, dragging, intents, pointer, setControls }) {
     Object.assign(this, { _store: store, _saver: saver, _settings: settings, _panes: panes, _notices: notices, _walk: walk });
     Object.assign(this, { _guard: guard, _heads: heads, _dragging: dragging, _intents: intents, _pointer: pointer, _setControls: setControls });
-    this._help = fetchedDialog(notices, import.meta.resolve("./help.js"));
+    this._help = fetchedDialog(notices, import.meta.resolve("./keys/help.js"));
     this._settingsDialog = fetchedDialog(notices, import.meta.resolve("./settings_dialog.js"));
   }
 

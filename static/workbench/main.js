@@ -1,11 +1,11 @@
-import { ApiError, NetworkError } from "./api.js";
-import { element } from "./dom.js";
-import { failureWords } from "./failure_words.js";
-import { fetchParts } from "./fetched.js";
-import { gettext } from "./messages.js";
-import { openSession } from "./session.js";
+import { ApiError, NetworkError } from "../base/api.js";
+import { element } from "../base/dom.js";
+import { failureWords } from "../base/failure_words.js";
+import { fetchParts } from "../base/lazy.js";
+import { gettext } from "../base/messages.js";
+import { openSession } from "../saving/session.js";
 import { started } from "./start.js";
-import { fetchTables } from "./tables.js";
+import { fetchTables } from "../tables/tables.js";
 import { buildWorkbench } from "./workbench.js";
 
 const { mode, home } = document.body.dataset;

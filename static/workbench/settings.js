@@ -2,8 +2,8 @@
  * What an annotator has chosen, kept in this browser. Every row of the table is one choice with its default;
  * rows with a label appear in the dialog, the others (layouts, keys, hints shown …) are only remembered.
  */
-import { Emitter } from "./emitter.js";
-import { gettext } from "./messages.js";
+import { Emitter } from "../base/emitter.js";
+import { gettext } from "../base/messages.js";
 
 const PREFIX = "gtm-workbench-";
 

@@ -1,6 +1,6 @@
-import { openDialog } from "./dialogs.js";
-import { element } from "./dom.js";
-import { gettext } from "./messages.js";
+import { openDialog } from "../base/dialogs.js";
+import { element } from "../base/dom.js";
+import { gettext } from "../base/messages.js";
 import { settingGroups } from "./settings.js";
 
 /** Made from the table of settings; every change counts at once, so there is nothing to confirm. */

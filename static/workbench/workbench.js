@@ -1,42 +1,42 @@
 import { Actions } from "./actions.js";
 import { AnnotatingIntents } from "./annotating_intents.js";
 import { Bar } from "./bar.js";
-import { mapColours, startOptions } from "./display.js";
-import { element } from "./dom.js";
-import { fetched, fetchedDialog } from "./fetched.js";
+import { mapColours, startOptions } from "../views/display.js";
+import { element } from "../base/dom.js";
+import { fetched, fetchedDialog } from "../base/lazy.js";
 import { Hints } from "./hints.js";
-import { IdentityActions } from "./identity_actions.js";
+import { IdentityActions } from "./people/identity_actions.js";
 import { KeyActions } from "./key_actions.js";
-import { nameKeys } from "./key_titles.js";
-import { Keyboard } from "./keyboard.js";
-import { useKeys } from "./keys.js";
-import { Layout } from "./layout.js";
-import { gettext } from "./messages.js";
-import { Notices } from "./notices.js";
-import { panelTools } from "./panel_tools.js";
-import { Panes } from "./panes.js";
-import { Paths } from "./paths.js";
-import { PeopleActions } from "./people_actions.js";
-import { PeoplePanel } from "./people_panel.js";
-import { placingParts } from "./placing.js";
-import { Playback } from "./playback.js";
-import { Pointer } from "./pointer.js";
-import { Round } from "./round.js";
+import { nameKeys } from "./keys/key_titles.js";
+import { Keyboard } from "./keys/keyboard.js";
+import { useKeys } from "./keys/keys.js";
+import { Layout } from "../views/layout.js";
+import { gettext } from "../base/messages.js";
+import { Notices } from "../base/notices.js";
+import { panelTools } from "./people/panel_tools.js";
+import { Panes } from "../views/panes.js";
+import { Paths } from "../views/paths.js";
+import { PeopleActions } from "./people/people_actions.js";
+import { PeoplePanel } from "./people/people_panel.js";
+import { placingParts } from "./placing_parts.js";
+import { Playback } from "./frames/playback.js";
+import { Pointer } from "../views/pointer.js";
+import { Round } from "./people/one_by_one.js";
 import { DISPLAYED, Settings } from "./settings.js";
-import { TimeActions } from "./time_actions.js";
-import { Timeline } from "./timeline.js";
-import { UndoActions } from "./undo_actions.js";
-import { Views } from "./views.js";
-import { Walk } from "./walk.js";
-import { WarningActions } from "./warning_actions.js";
-import { warningItems } from "./warning_marks.js";
-import { Warnings } from "./warnings.js";
-import { WarningsPanel } from "./warnings_panel.js";
+import { TimeActions } from "./frames/time_actions.js";
+import { Timeline } from "./frames/timeline.js";
+import { UndoActions } from "./frames/undo_actions.js";
+import { Views } from "../views/views.js";
+import { Walk } from "./frames/navigation.js";
+import { WarningActions } from "./warnings/warning_actions.js";
+import { warningItems } from "./warnings/warning_marks.js";
+import { Warnings } from "./warnings/warnings.js";
+import { WarningsPanel } from "./warnings/warnings_panel.js";
 
 /**
  * Builds the page over a session inside `root` and connects its parts. What few need, and nobody without the
  * server, is fetched when it is needed.
- * @param {import("./session.js").Session} session
+ * @param {import("../saving/session.js").Session} session
  * @param {{mode: string, home: string}} settings
  */
 export async function buildWorkbench(root, session, { mode, home }) {
@@ -45,7 +45,7 @@ export async function buildWorkbench(root, session, { mode, home }) {
   const panes = new Panes({ scene, store, images, options: startOptions() });
   settings.on("change", () => panes.markPeople(true));
   const notices = new Notices();
-  const finishing = fetchedDialog(notices, import.meta.resolve("./finish.js"));
+  const finishing = fetchedDialog(notices, import.meta.resolve("./frames/finish.js"));
   const finish = async () => (await finishing())?.finishAssignment({ ...session, walk, notices, home });
   const walk = new Walk({ ...session, notices, finish });
   const page = { settings, panes, notices, walk };
@@ -101,7 +101,7 @@ function fillTable(actions, session, page, parts) {
 }
 
 async function startTutorial(panel, parts) {
-  const { Tutorial } = await import("./tutorial.js"); // without it the page is not started: main.js says so
+  const { Tutorial } = await import("./tutorial/tutorial.js"); // without it the page is not started: main.js says so
   const tutorial = new Tutorial(parts);
   panel.element.prepend(tutorial.element);
   tutorial.start();
@@ -115,7 +115,7 @@ function showFilmstrip(timeline, notices, parts) {
     timeline.element.before(filmstrip.element);
     return filmstrip;
   };
-  const filmstrip = fetched(notices, import.meta.resolve("./filmstrip.js"), make);
+  const filmstrip = fetched(notices, import.meta.resolve("./frames/filmstrip.js"), make);
   settings.watch("filmstrip", async (shown) => {
     if (shown && !(await filmstrip())) settings.set("filmstrip", false);
   });
@@ -128,7 +128,7 @@ function frameHistory(panel, parts) {
     panel.element.append(made.element);
     return made;
   };
-  const history = fetched(parts.notices, import.meta.resolve("./frame_history.js"), make);
+  const history = fetched(parts.notices, import.meta.resolve("./frames/frame_history.js"), make);
   return { history: async () => (await history())?.toggle() };
 }
 
@@ -154,7 +154,7 @@ function chooseViews(root, views, { panes, settings, notices }) {
     root.append(made.element);
     return made;
   };
-  const menu = fetched(notices, import.meta.resolve("./views_menu.js"), make);
+  const menu = fetched(notices, import.meta.resolve("../views/views_menu.js"), make);
   for (const name of DISPLAYED) settings.watch(name, (value) => panes.set(name, value));
   return { ...views.table(), views: async () => (await menu())?.toggle() };
 }
@@ -198,7 +198,7 @@ function watch(session, panes, notices) {
 
 /** One question after the other. @returns {() => void} asks those again that could not be asked */
 function askAboutConflicts({ saver, scene, store }, notices) {
-  const conflicts = fetched(notices, import.meta.resolve("./conflicts.js"));
+  const conflicts = fetched(notices, import.meta.resolve("../saving/conflicts.js"));
   const waiting = [];
   let asking = Promise.resolve();
   const ask = async (conflict) => {

@@ -8,7 +8,8 @@ from django.contrib.auth.models import User
 from django.test import Client
 
 from gtm_hit.models import Assignment, Dataset, Layer
-from gtm_hit.ops import api_tokens, assignments, batches, tokens
+from gtm_hit.ops import api_tokens
+from gtm_hit.ops.work import assignments, batches, links
 from tests.work_scene import make_dataset, make_layer, make_worker
 
 
@@ -35,7 +36,7 @@ class Caller:
 
 
 def holder(assignment: Assignment) -> Caller:
-    return Caller(f"Assignment {tokens.assignment_token(assignment)}")
+    return Caller(f"Assignment {links.assignment_token(assignment)}")
 
 
 def bearer(*scopes: str) -> Caller:

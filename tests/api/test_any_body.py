@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.django import TestCase
 
 from gtm_hit.models import Save
-from gtm_hit.ops import assignments, batches, tokens
+from gtm_hit.ops.work import assignments, batches, links
 from tests.api.conftest import Caller
 from tests.work_scene import make_dataset, make_worker, row
 
@@ -49,8 +49,8 @@ class AnyBodyTest(TestCase):
         dataset = make_dataset(frames=2)
         batches.make_batches(dataset)
         assignment = assignments.claim(make_worker(), dataset)
-        self.alice = Caller(f"Assignment {tokens.assignment_token(assignment)}")
-        self.learner = Caller(f"Worker {tokens.worker_token(assignment.worker, dataset)}")
+        self.alice = Caller(f"Assignment {links.assignment_token(assignment)}")
+        self.learner = Caller(f"Worker {links.worker_token(assignment.worker, dataset)}")
 
     def send(self, caller: Caller, method: str, path: str, content: Any) -> Any:
         # json.dumps writes lone surrogates as escapes, as a hostile sender would.

@@ -6,7 +6,7 @@ import pytest
 from django.core.management import call_command
 from django.db import OperationalError
 
-from gtm_hit.api import frames
+from gtm_hit.api.workbench import frames
 from gtm_hit.models import Save
 from tests.api.conftest import Caller, body
 

@@ -11,7 +11,8 @@ from typing import Any
 from django.contrib.auth.models import User
 
 from gtm_hit.models import Job
-from gtm_hit.ops import api_tokens, jobs
+from gtm_hit.ops import api_tokens
+from gtm_hit.ops.jobs import queue
 from gtm_hit.tasks import OPERATIONS
 from tests.dataset_folder import VALUES, make_folder
 
@@ -37,7 +38,7 @@ def test_the_documented_client_goes_from_images_to_a_release(
     )
     while client.poll() is None:  # a Celery worker's part
         for job in Job.objects.filter(state=Job.State.QUEUED):
-            jobs.run(job.pk, OPERATIONS)
+            queue.run(job.pk, OPERATIONS)
         time.sleep(0.1)
     said = client.communicate()[0]
 

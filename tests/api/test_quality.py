@@ -13,9 +13,9 @@ from django.urls import reverse
 from PIL import Image as Picture
 
 from gtm_hit.models import Dataset, Layer
-from gtm_hit.ops import assignments, batches, tokens
 from gtm_hit.ops.quality.agreement import as_numbers, batch_agreements
 from gtm_hit.ops.quality.comparing import compare, frame_lines
+from gtm_hit.ops.work import assignments, batches, links
 from tests.api.conftest import Caller, bearer
 from tests.ops.quality.scene import two_layers
 from tests.work_scene import finish, make_dataset, make_worker, row, save
@@ -151,10 +151,10 @@ def test_measuring_files_takes_the_scope_to_read(stranger: Caller, user: Caller)
 
 
 def test_the_link_lets_workers_in(dataset: Dataset, staff: Caller, stranger: Caller, user: Caller) -> None:
-    entry = reverse("join", args=[tokens.entry_token(dataset)])
+    entry = reverse("join", args=[links.entry_token(dataset)])
     assert bearer("work").get(BASE + "link/").json()["link"] == "http://testserver" + entry
     own = bearer("work").get(BASE + "link/?worker=ada&platform=prolific").json()["link"]
-    assert tokens.read_entry(own.split("/")[-2]).external_id == "ada"
+    assert links.read_entry(own.split("/")[-2]).external_id == "ada"
     assert staff.get(BASE + "link/").status_code == 200
     assert stranger.get(BASE + "link/").status_code == 401
     assert user.get(BASE + "link/").status_code == 403

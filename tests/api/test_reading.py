@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from gtm_hit.models import Assignment, Job, Layer
-from gtm_hit.ops import jobs
+from gtm_hit.ops.jobs import queue
 from tests.api.conftest import Caller, bearer
 from tests.work_scene import add_frames, make_dataset, make_layer, row, save
 
@@ -133,8 +133,8 @@ def test_assignments_show_pseudonyms_only(assignment: Assignment) -> None:
 
 
 def test_jobs_are_narrowed_down(layer: Layer) -> None:
-    jobs.create(Job.Kind.EXPORT_LAYER, layer.dataset, {})
-    jobs.create(Job.Kind.IMPORT_DATASET, None, {})
+    queue.create(Job.Kind.EXPORT_LAYER, layer.dataset, {})
+    queue.create(Job.Kind.IMPORT_DATASET, None, {})
     script = bearer("read")
     assert script.get("/api/v1/jobs/").json()["count"] == 2
     found = script.get("/api/v1/jobs/?dataset=square&state=queued").json()["results"]

@@ -9,8 +9,8 @@ import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
 from gtm_hit.models import Batch, Dataset, Job, Layer, Release
-from gtm_hit.ops import jobs
-from gtm_hit.ops.releases import PARTS
+from gtm_hit.ops.jobs import queue
+from gtm_hit.ops.releases.releasing import PARTS
 from gtm_hit.tasks import OPERATIONS
 from tests.api.conftest import Caller, bearer
 from tests.ops.square_layer import fill, make_square
@@ -59,7 +59,7 @@ def truth(db: None) -> Layer:
 
 def run(response: Any) -> Job:
     assert response.status_code == 202, response.json()
-    jobs.run(response.json()["id"], OPERATIONS)
+    queue.run(response.json()["id"], OPERATIONS)
     return Job.objects.get(pk=response.json()["id"])
 
 

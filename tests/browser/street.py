@@ -10,13 +10,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from gtm_hit.formats.camera_json import load_cameras
+from gtm_hit.formats.calibration.cameras_json import load_cameras
 from gtm_hit.geometry.camera import Camera as CalibratedCamera
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.models import Annotation, Assignment, Camera, Dataset, Frame, Image, Layer
-from gtm_hit.ops import assignments, batches, images, tokens, workers
-from gtm_hit.ops.annotations import save_frame
+from gtm_hit.ops.files import images
+from gtm_hit.ops.frames.saving import save_frame
+from gtm_hit.ops.work import assignments, batches, links, workers
 from tests.conftest import REPOSITORY
 
 GRID = Grid(columns=480, rows=1440, step=0.025, origin_x=-3.0, origin_y=-9.0)
@@ -85,7 +86,7 @@ class Street:
 
 
 def workbench_path(assignment: Assignment) -> str:
-    return f"/annotate/{tokens.assignment_token(assignment)}/"
+    return f"/annotate/{links.assignment_token(assignment)}/"
 
 
 def make_street(

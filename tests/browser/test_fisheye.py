@@ -13,15 +13,16 @@ import pytest
 from playwright.sync_api import Page, Route, expect
 from pytest_django.live_server_helper import LiveServer
 
-from gtm_hit.formats.calibration_xml import read_intrinsic
-from gtm_hit.formats.camera_json import load_cameras
+from gtm_hit.formats.calibration.cameras_json import load_cameras
+from gtm_hit.formats.calibration.wildtrack_xml import read_intrinsic
 from gtm_hit.geometry.camera import CameraModel, project
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.models import Annotation, Assignment, Dataset
-from gtm_hit.ops import assignments, exporting, tokens, workers
-from gtm_hit.ops.annotations import save_frame
-from gtm_hit.ops.batches import make_batches
-from gtm_hit.ops.importing.dataset import import_dataset
+from gtm_hit.ops.datasets.importing import import_dataset
+from gtm_hit.ops.exports import exporting
+from gtm_hit.ops.frames.saving import save_frame
+from gtm_hit.ops.work import assignments, links, workers
+from gtm_hit.ops.work.batches import make_batches
 from tests import fisheye_folder
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
@@ -58,7 +59,7 @@ def opened(page: Page, live_server: LiveServer, assignment: Assignment) -> Itera
 
 
 def go(page: Page, server: LiveServer, assignment: Assignment) -> None:
-    page.goto(f"{server.url}/annotate/{tokens.assignment_token(assignment)}/")
+    page.goto(f"{server.url}/annotate/{links.assignment_token(assignment)}/")
 
 
 def clear_positions(count: int) -> list[int]:

@@ -24,7 +24,7 @@ from tests.geometry.test_fisheye import CAMERA as FISHEYE
 pytestmark = [pytest.mark.browser]
 
 OPEN = """
-    const { openScene, fetchTables } = await import("/static/workbench/tables.js");
+    const { openScene, fetchTables } = await import("/static/tables/tables.js");
     const api = { headers: () => ({}) };
     const images = { settled: async () => {} };
     const words = [];
@@ -104,7 +104,7 @@ def test_boxes_are_the_same_before_and_after_the_table_arrives(
     serve(module_page, packed(wildtrack_table))
     positions = np.random.default_rng(2).integers(0, WILDTRACK_GRID.count, 3000).tolist()
     code = """
-        const { Scene } = await import("/static/workbench/scene.js");
+        const { Scene } = await import("/static/truth/scene.js");
         const at = (scene) => given.positions.map((position) =>
             scene.rectangles({ position, height: null, radius: null }));
         return JSON.stringify(at(scene)) === JSON.stringify(at(new Scene(given.scene)));

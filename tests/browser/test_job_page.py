@@ -9,7 +9,7 @@ from playwright.sync_api import Page, expect
 from pytest_django.live_server_helper import LiveServer
 
 from gtm_hit.models import Job
-from gtm_hit.ops import jobs
+from gtm_hit.ops.jobs import queue
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -21,14 +21,14 @@ def job(page: Page, live_server: LiveServer) -> Job:
     client.force_login(User.objects.create_user("vera", is_staff=True))
     session = client.cookies["sessionid"].value
     page.context.add_cookies([{"name": "sessionid", "value": session, "url": live_server.url}])
-    job = jobs.create(Job.Kind.IMPORT_DATASET, None, {})
+    job = queue.create(Job.Kind.IMPORT_DATASET, None, {})
     page.goto(f"{live_server.url}/jobs/{job.pk}/")
     return job
 
 
 def test_the_page_shows_how_far_the_job_is_and_how_it_ends(page: Page, job: Job) -> None:
     expect(page.locator("[data-job-state]")).to_have_text("waiting")
-    run = jobs.claim(job.pk)
+    run = queue.claim(job.pk)
     assert run is not None
     run.report(40, 100, "reading pictures")
     expect(page.locator("[data-job-state]")).to_have_text("running")

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.browser
 
 def chord(page: Page, key: str, code: str, *, foreign: bool = False, **more: Any) -> str:
     script = """async ([options, foreign]) => {
-      const { chord } = await import("/static/workbench/key_press.js");
+      const { chord } = await import("/static/base/key_press.js");
       return chord(new KeyboardEvent("keydown", options), foreign);
     }"""
     return str(page.evaluate(script, [{"key": key, "code": code, **more}, foreign]))

@@ -16,8 +16,8 @@ MEGABYTE = 1024 * 1024
 
 # A batch of ten frames and seven views; what is alive is counted where it is decoded and closed.
 BATCH = """
-const { Images } = await import("/static/workbench/images.js");
-const { CameraView } = await import("/static/workbench/camera_view.js");
+const { Images } = await import("/static/views/images.js");
+const { CameraView } = await import("/static/views/camera_view.js");
 const counted = { alive: 0, most: 0 };
 const bytes = ({ width, height }) => 4 * width * height;
 const decode = window.createImageBitmap;

@@ -16,7 +16,7 @@ from pytest_django.live_server_helper import LiveServer
 
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.models import Annotation, Assignment, Frame, Layer
-from gtm_hit.ops import tutorial
+from gtm_hit.ops.tutorial import lesson
 from tests.browser.bench import TWO_FRAMES, best_view, click_position, metres_apart, off_centre
 from tests.browser.street import GRID, cameras
 from tests.browser.test_workbench_tutorial import choose, click_truth, next_step
@@ -95,7 +95,7 @@ def learn(page: Page) -> None:
     """The tutorial, every step by what the worker sees: the truth of the demo scene."""
     page.get_by_role("link", name="Tutorial").click()
     expect(page.locator("#workbench")).to_have_attribute("data-ready", "true")
-    exercise = tutorial.load().exercise
+    exercise = lesson.load().exercise
     place(page, exercise.truth[0][exercise.missing])
     next_step(page)
     choose(page, exercise.shifted)

@@ -28,10 +28,10 @@ const look = () => Object.fromEntries(store.numbers.map((number) => [number,
   Object.fromEntries([...store.people(number)].map(([person, { position }]) => [person, position]))]));
 """
 MODULES = {
-    "store": "Store",
-    "history": "History",
-    "annotation": "annotation",
-    "identity": "plan",
+    "truth/store": "Store",
+    "truth/history": "History",
+    "truth/annotation": "annotation",
+    "truth/identity": "plan",
 }
 TWO = {0: {1: 10, 2: 20}, 5: {1: 11, 2: 21}, 10: {1: 12, 2: 22}, 15: {1: 13}}
 

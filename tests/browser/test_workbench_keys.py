@@ -15,7 +15,7 @@ pytestmark = pytest.mark.browser
 
 def keys_of(page: Page, chosen: dict[str, Any]) -> dict[str, list[str]]:
     script = """async (chosen) => {
-      const { useKeys, keyTable } = await import("/static/workbench/keys.js");
+      const { useKeys, keyTable } = await import("/static/workbench/keys/keys.js");
       useKeys(chosen);
       return Object.fromEntries(keyTable().map(({ id, keys }) => [id, keys]));
     }"""

@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Page, expect
 from pytest_django.live_server_helper import LiveServer
 
 from gtm_hit.models import Annotation, Frame, Layer, Save
-from gtm_hit.ops.annotations import save_frame
+from gtm_hit.ops.frames.saving import save_frame
 from tests.browser.street import FRAME_STEP, GRID, make_street
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]

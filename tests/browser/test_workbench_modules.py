@@ -19,8 +19,7 @@ const places = (map) => Object.fromEntries([...map].map(([person, {position}]) =
 def run(page: Page, modules: dict[str, str], body: str) -> Any:
     """Evaluate a function body with names imported from modules of the workbench."""
     imports = "".join(
-        f'const {{{names}}} = await import("/static/workbench/{module}.js");'
-        for module, names in modules.items()
+        f'const {{{names}}} = await import("/static/{module}.js");' for module, names in modules.items()
     )
     return page.evaluate(f"async () => {{ {imports} {body} }}")
 
@@ -28,7 +27,7 @@ def run(page: Page, modules: dict[str, str], body: str) -> Any:
 def merged(page: Page, base: dict[int, int], ours: dict[int, int], theirs: dict[int, int]) -> Any:
     return run(
         page,
-        {"annotation": "annotation", "merge": "mergePeople"},
+        {"truth/annotation": "annotation", "truth/merge": "mergePeople"},
         PEOPLE
         + f"""
         const result = mergePeople(people({base}), people({ours}), people({theirs}));
@@ -78,10 +77,10 @@ def test_undo_takes_back_everything_and_redo_brings_it_all_again(module_page: Pa
     steps = run(
         module_page,
         {
-            "store": "Store",
-            "history": "History",
-            "annotation": "asList",
-            "commands": "place, move, remove",
+            "truth/store": "Store",
+            "truth/history": "History",
+            "truth/annotation": "asList",
+            "truth/commands": "place, move, remove",
         },
         """
         const store = new Store([0, 5], 1);
@@ -111,7 +110,12 @@ def test_undo_takes_back_everything_and_redo_brings_it_all_again(module_page: Pa
 def test_a_removed_validation_takes_the_done_mark_away_and_undo_restores_it(module_page: Page) -> None:
     done = run(
         module_page,
-        {"store": "Store", "history": "History", "commands": "place, remove", "annotation": "annotation"},
+        {
+            "truth/store": "Store",
+            "truth/history": "History",
+            "truth/commands": "place, remove",
+            "truth/annotation": "annotation",
+        },
         """
         const store = new Store([0], 1);
         const history = new History(store);
@@ -131,7 +135,7 @@ def test_a_removed_validation_takes_the_done_mark_away_and_undo_restores_it(modu
 def test_zooming_keeps_the_point_under_the_pointer(module_page: Page) -> None:
     far, back = run(
         module_page,
-        {"transform": "Transform"},
+        {"views/transform": "Transform"},
         """
         const before = new Transform(0.3, 12, 40);
         const at = before.toSource(200, 120);
@@ -153,7 +157,7 @@ def test_panes_are_laid_out_so_that_pictures_come_out_largest(
 ) -> None:
     found = run(
         module_page,
-        {"layout": "arrange"},
+        {"views/layout": "arrange"},
         f"""
         const {{columns, rows, panel}} = arrange(8, {{width: {width}, height: {height}}}, 16 / 9);
         return [columns, rows, panel];

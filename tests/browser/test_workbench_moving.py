@@ -283,5 +283,9 @@ def test_a_step_onto_somebody_goes_past_them(bench: Callable[..., Bench]) -> Non
 
 
 def test_paces_rise_gently(module_page: Page) -> None:
-    paces = run(module_page, {"held": "paceAfter"}, "return [0, 1, 60, 61, 120, 121, 500].map(paceAfter);")
+    paces = run(
+        module_page,
+        {"workbench/keys/key_repeat": "paceAfter"},
+        "return [0, 1, 60, 61, 120, 121, 500].map(paceAfter);",
+    )
     assert paces == [1, 1, 1, 2, 2, 4, 4]

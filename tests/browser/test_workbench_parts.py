@@ -42,7 +42,7 @@ def test_a_cold_opening_names_every_module_before_it_is_imported(bench: Callable
     page = bench().open().page
     named = page.evaluate("[...document.querySelectorAll('link[rel=modulepreload]')].map(({href}) => href)")
     loaded = page.evaluate("performance.getEntriesByType('resource').map(({name}) => name)")
-    modules = {name for name in loaded if "/workbench/" in name or "/geometry/" in name}
+    modules = {name for name in loaded if "/static/" in name and "/static/site/" not in name}
     modules -= {name for name in modules if "grid_worker" in name}  # it comes behind the pictures
     unnamed = {name for name in modules if name.endswith(".js")} - set(named)
     assert [name.rsplit("/")[-1] for name in unnamed] == ["main.js"]
@@ -54,12 +54,12 @@ def slow(route: Route) -> None:
 
 
 PARTS = [
-    ("?", "help", "dialog:modal"),
-    (",", "settings_dialog", "dialog:modal"),
-    ("r", "identity_dialog", "dialog:modal"),
-    ("u", "views_menu", ".views-menu:not([hidden])"),
-    ("m", "filmstrip", ".filmstrip"),
-    ("Shift+h", "frame_history", ".frame-history"),
+    ("?", "workbench/keys/help", "dialog:modal"),
+    (",", "workbench/settings_dialog", "dialog:modal"),
+    ("r", "workbench/people/identity_dialog", "dialog:modal"),
+    ("u", "views/views_menu", ".views-menu:not([hidden])"),
+    ("m", "workbench/frames/filmstrip", ".filmstrip"),
+    ("Shift+h", "workbench/frames/frame_history", ".frame-history"),
 ]
 
 
@@ -69,7 +69,7 @@ def test_a_part_that_does_not_arrive_says_so_and_comes_at_the_next_try(
 ) -> None:
     opened = bench(people=2).open()
     page = opened.page
-    pattern = f"**/workbench/{module}*.js"
+    pattern = f"**/{module}*.js"
     page.route(pattern, lambda route: route.abort())
     opened.press("Tab", key)
     expect(page.locator(".notices")).to_contain_text("did not arrive")
@@ -111,7 +111,7 @@ def test_after_the_first_action_all_parts_come_by_themselves(bench: Callable[...
 
 def test_a_click_places_although_nothing_tells_how_far_it_can_be_off(bench: Callable[..., Bench]) -> None:
     opened = bench(people=1, marked=False)
-    opened.page.route("**/workbench/doubt*.js", lambda route: route.abort())
+    opened.page.route("**/truth/uncertainty*.js", lambda route: route.abort())
     opened.open().click_ground(0)
     assert len(opened.rows()) == 1
 
@@ -120,7 +120,7 @@ def test_going_one_by_one_works_although_the_corner_pictures_do_not_arrive(
     bench: Callable[..., Bench],
 ) -> None:
     opened = bench(people=2).open()
-    opened.page.route("**/workbench/whois*.js", lambda route: route.abort())
+    opened.page.route("**/workbench/people/whois*.js", lambda route: route.abort())
     opened.press("n", "a")
     expect(opened.page.locator(".notices")).to_contain_text("did not arrive")
     opened.press("Enter", "Enter")
@@ -130,7 +130,7 @@ def test_going_one_by_one_works_although_the_corner_pictures_do_not_arrive(
 def test_edits_go_on_and_are_saved_while_a_part_does_not_arrive(bench: Callable[..., Bench]) -> None:
     opened = bench(people=1).open()
     before = opened.stored()[0].position
-    opened.page.route("**/workbench/help*.js", lambda route: route.abort())
+    opened.page.route("**/workbench/keys/help*.js", lambda route: route.abort())
     opened.press("Tab", "ArrowLeft", "?")
     expect(opened.page.locator(".notices")).to_contain_text("Nothing is lost")
     opened.press("ArrowLeft")

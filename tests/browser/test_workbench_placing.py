@@ -133,7 +133,7 @@ def test_the_ghost_says_where_it_is_and_what_speaks_against_it(
 ) -> None:
     said = run(
         module_page,
-        {"spot": "spotOn, spotWords", "../geometry/grid": "Grid"},
+        {"truth/ground_point": "spotOn, spotWords", "geometry/grid": "Grid"},
         f"""
         const grid = new Grid({{columns: 480, rows: 1440, step: 0.025, origin: [-3, -9]}});
         const scene = {{
@@ -321,7 +321,7 @@ def test_settings_are_remembered_by_the_browser(bench: Callable[..., Bench]) -> 
 def test_a_stored_setting_that_fits_no_more_falls_back_to_the_default(module_page: Page) -> None:
     values = run(
         module_page,
-        {"settings": "Settings"},
+        {"workbench/settings": "Settings"},
         """
         localStorage.setItem("gtm-workbench-arrowAxes", '"sideways"');
         localStorage.setItem("gtm-workbench-ghost", "{broken");
@@ -335,7 +335,7 @@ def test_a_stored_setting_that_fits_no_more_falls_back_to_the_default(module_pag
 def test_a_setting_tells_who_watches_it_and_refuses_what_it_cannot_be(module_page: Page) -> None:
     result = run(
         module_page,
-        {"settings": "Settings"},
+        {"workbench/settings": "Settings"},
         """
         const settings = new Settings();
         const heard = [];

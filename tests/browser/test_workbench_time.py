@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Locator, expect
 
 from gtm_hit.models import Assignment, LayerFrame
-from gtm_hit.ops import assignments, workers
+from gtm_hit.ops.work import assignments, workers
 from tests.browser.bench import Bench, metres_apart
 from tests.browser.street import annotate
 from tests.work_scene import finish

@@ -12,8 +12,8 @@ pytestmark = pytest.mark.browser
 # 100 × 80 positions of 10 cm; frames 0, 5, 10 … half a second apart; positions are written as [column, row].
 SCENE = """
 const {Grid} = await import("/static/geometry/grid.js");
-const {annotation} = await import("/static/workbench/annotation.js");
-const {Store} = await import("/static/workbench/store.js");
+const {annotation} = await import("/static/truth/annotation.js");
+const {Store} = await import("/static/truth/store.js");
 const grid = new Grid({columns: 100, rows: 80, step: 0.1, origin: [-5, 2]});
 const neighbours = {before: [], after: []};
 const scene = {grid, neighbours, metres: (p) => grid.metres(p), seconds: (n) => n / 10};
@@ -32,8 +32,7 @@ const cells = (map) => Object.fromEntries([...map.values()].map((a) => [a.person
 
 def run(page: Page, modules: dict[str, str], body: str) -> Any:
     imports = "".join(
-        f'const {{{names}}} = await import("/static/workbench/{module}.js");'
-        for module, names in modules.items()
+        f'const {{{names}}} = await import("/static/{module}.js");' for module, names in modules.items()
     )
     return page.evaluate(f"async () => {{ {SCENE} {imports} {body} }}")
 
@@ -42,7 +41,7 @@ def predicted(page: Page, sources: str, options: str = "{}", time: float = 1.5) 
     """Column and row of everybody at 1.5 s; sources are at 1.0, 0.5, 0 s."""
     return run(
         page,
-        {"carry": "predictPeople"},
+        {"truth/propagation": "predictPeople"},
         f"""
         const sources = {sources}.map((list, index) => ({{time: {time} > 0 ? 1 - index / 2 : index / 2 + 0.5,
                                                           people: people(...list)}}));
@@ -93,7 +92,7 @@ def test_going_backwards_the_movement_is_continued_backwards(module_page: Page) 
 def test_yellow_people_come_nearest_first_and_keep_their_turn(module_page: Page) -> None:
     turns = run(
         module_page,
-        {"tour": "Tour"},
+        {"workbench/people/queue": "Tour"},
         """
         const store = frames([one(1, [0, 0]), one(2, [50, 0]), one(3, [10, 0]), one(4, [60, 0])].map(
           (a) => annotation({...a, state: "carried"})));
@@ -135,7 +134,7 @@ def test_who_is_there_already_is_not_brought_again(module_page: Page) -> None:
 def test_a_carried_person_keeps_the_height_and_is_to_be_looked_at(module_page: Page) -> None:
     result = run(
         module_page,
-        {"carry": "predictPeople"},
+        {"truth/propagation": "predictPeople"},
         """
         const sources = [{time: 0, people: people(one(1, [5, 5], {height: 1.62, radius: 0.2}))}];
         return predictPeople(grid, 0.5, sources)[0];
@@ -148,7 +147,7 @@ def test_a_carried_person_keeps_the_height_and_is_to_be_looked_at(module_page: P
 def filled(page: Page, frames: str, person: int = 1) -> Any:
     return run(
         page,
-        {"keyframes": "fillEdits", "merge": "same"},
+        {"truth/keyframes": "fillEdits", "truth/merge": "same"},
         f"""
         const store = frames({frames});
         const edits = fillEdits(store, scene, {person});
@@ -191,7 +190,11 @@ def test_a_moved_keyframe_takes_what_was_filled_beside_it_along(module_page: Pag
     """Frame 10 was looked at since: it stays, and nothing beyond it changes. One undo takes all back."""
     result = run(
         module_page,
-        {"keyframes": "fillEdits, withRefill", "history": "History", "commands": "fill, validate, move"},
+        {
+            "truth/keyframes": "fillEdits, withRefill",
+            "truth/history": "History",
+            "truth/commands": "fill, validate, move",
+        },
         """
         const store = frames([one(1, [10, 10])], [], [], [], [one(1, [50, 10])]);
         const history = new History(store, (patch) => withRefill(store, scene, patch));
@@ -215,7 +218,11 @@ def test_a_moved_keyframe_takes_what_was_filled_beside_it_along(module_page: Pag
 def test_a_keyframe_taken_away_lets_the_line_go_straight(module_page: Page) -> None:
     places = run(
         module_page,
-        {"keyframes": "fillEdits, withRefill", "history": "History", "commands": "fill, remove"},
+        {
+            "truth/keyframes": "fillEdits, withRefill",
+            "truth/history": "History",
+            "truth/commands": "fill, remove",
+        },
         """
         const store = frames([one(1, [10, 10])], [], [one(1, [30, 50])], [], [one(1, [50, 10])]);
         const history = new History(store, (patch) => withRefill(store, scene, patch));
@@ -231,7 +238,7 @@ def test_a_keyframe_taken_away_lets_the_line_go_straight(module_page: Page) -> N
 def test_numbers_of_another_batch_are_kept_only_where_they_are_free(module_page: Page) -> None:
     numbers = run(
         module_page,
-        {"sources": "withFreeNumbers"},
+        {"truth/sources": "withFreeNumbers"},
         """
         const store = frames([]);
         const brought = [one(7, [1, 1]), one(80, [2, 2]), one(60, [3, 3])];
@@ -244,7 +251,7 @@ def test_numbers_of_another_batch_are_kept_only_where_they_are_free(module_page:
 def test_people_come_from_the_nearer_side(module_page: Page) -> None:
     sides = run(
         module_page,
-        {"sources": "nearestSide"},
+        {"truth/sources": "nearestSide"},
         """
         const store = frames([one(1, [1, 1])], [], [], [one(2, [2, 2])], []);
         return [5, 10, 20].map((number) => nearestSide(store, scene, number).map((source) => source.number));
@@ -257,7 +264,7 @@ def tasks(page: Page, frames: str, current: int = 0) -> Any:
     """The next thing to do, and the one after it."""
     return run(
         page,
-        {"todo": "nextTask"},
+        {"truth/todo": "nextTask"},
         f"""
         const store = frames({frames});
         store.open({current});
@@ -296,7 +303,7 @@ def test_when_all_is_done_there_is_nothing_left(module_page: Page) -> None:
 def test_steps_of_a_path_are_told_apart(module_page: Page) -> None:
     kinds = run(
         module_page,
-        {"paths": "trail, kindOfStep"},
+        {"views/paths": "trail, kindOfStep"},
         f"""
         const yellow = one(1, [3, 3], {YELLOW});
         const store = frames([one(1, [1, 1])], [one(1, [2, 2])], [yellow], [], [one(1, [4, 4])]);
@@ -310,7 +317,7 @@ def test_steps_of_a_path_are_told_apart(module_page: Page) -> None:
 def test_the_views_that_show_a_person_whole_and_tall_are_chosen(module_page: Page) -> None:
     chosen = run(
         module_page,
-        {"crops": "bestViews"},
+        {"views/crops": "bestViews"},
         """
         const box = (xmin, ymin, xmax, ymax) => ({xmin, ymin, xmax, ymax});
         const boxes = [box(10, 10, 30, 60), null, box(90, 10, 150, 210), box(10, 10, 40, 90),

@@ -11,8 +11,9 @@ from playwright.sync_api import Locator, Page, expect
 from pytest_django.live_server_helper import LiveServer
 
 from gtm_hit.models import Worker
-from gtm_hit.ops import tokens, tutorial, workers
-from gtm_hit.ops.tutorial_exercise import Exercise
+from gtm_hit.ops.tutorial import lesson
+from gtm_hit.ops.tutorial.exercise import Exercise
+from gtm_hit.ops.work import links, workers
 from tests.browser.bench import TWO_FRAMES, best_view, click_position
 from tests.browser.street import make_street, tell_truth
 
@@ -42,8 +43,8 @@ def learner(live_server: LiveServer) -> Learner:
     street = make_street(people=6, frames=3, slug="demo")
     tell_truth(street)
     worker = workers.enter("link", "newcomer")
-    path = f"/work/{tokens.worker_token(worker, street.dataset)}/tutorial/"
-    return Learner(worker, live_server.url + path, tutorial.load().exercise)
+    path = f"/work/{links.worker_token(worker, street.dataset)}/tutorial/"
+    return Learner(worker, live_server.url + path, lesson.load().exercise)
 
 
 def start(page: Page, learner: Learner) -> Locator:

@@ -40,7 +40,7 @@ def test_a_double_click_makes_a_view_large_with_the_others_around_it(bench: Call
 @pytest.mark.parametrize(("width", "height"), [(1280, 700), (1920, 980), (3840, 2060)])
 def test_eight_views_with_a_large_one_leave_no_cell_empty(module_page: Page, width: int, height: int) -> None:
     script = """async (room) => {
-      const { arrangeAround } = await import("/static/workbench/layout.js");
+      const { arrangeAround } = await import("/static/views/layout.js");
       return arrangeAround(8, room, 16 / 9);
     }"""
     found = module_page.evaluate(script, {"width": width, "height": height})

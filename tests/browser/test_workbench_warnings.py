@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
-from gtm_hit.ops.annotations import save_frame
+from gtm_hit.ops.frames.saving import save_frame
 from tests.browser.bench import Bench
 from tests.browser.street import GRID
 from tests.browser.test_workbench_identity import saved_with
@@ -30,7 +30,7 @@ def found(
     """Kind, frame and persons of the warnings for people at places (metres), half a second between frames."""
     return run(
         page,
-        {"physics": "findWarnings"},
+        {"truth/plausibility": "findWarnings"},
         f"""
         const frames = {[[[person, list(at)] for person, at in frame.items()] for frame in frames]};
         const inMiddle = ({{ x, y }}) => Math.max(Math.abs(x), Math.abs(y)) < {border} - 0.5;

@@ -8,7 +8,7 @@ import pytest
 
 from gtm_hit.demo.people import Cast
 from gtm_hit.demo.scene import Scene, read_scene
-from gtm_hit.formats.camera_json import load_cameras
+from gtm_hit.formats.calibration.cameras_json import load_cameras
 from gtm_hit.geometry.camera import Camera
 
 FIXTURES = Path(__file__).resolve().parents[2] / "fixtures"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from gtm_hit.formats.calibration_files import match_names
+from gtm_hit.formats.calibration.files import match_names
 from gtm_hit.formats.dataset_folder import natural_key
 from gtm_hit.formats.layout import find_layout
 from gtm_hit.formats.problems import FormatError, ProblemList

@@ -14,10 +14,10 @@ from tests.conftest import REPOSITORY
 MEASURE = """
 import resource, sys
 from pathlib import Path
-from gtm_hit.formats import frame_column_row
-from gtm_hit.formats.coco import read_coco
-from gtm_hit.formats.csv_metres import read_csv
-from gtm_hit.formats.mot import read_mot
+from gtm_hit.formats.annotations import frame_column_row
+from gtm_hit.formats.annotations.coco import read_coco
+from gtm_hit.formats.annotations.csv_metres import read_csv
+from gtm_hit.formats.annotations.mot import read_mot
 from gtm_hit.formats.problems import FormatError
 resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
 path = Path(sys.argv[1])

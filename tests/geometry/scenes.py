@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import cv2
 import numpy as np
 
-from gtm_hit.formats.camera_json import load_cameras
+from gtm_hit.formats.calibration.cameras_json import load_cameras
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import Cylinder
 from gtm_hit.geometry.grid import Grid

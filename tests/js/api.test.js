@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { createServer } from "node:http";
 import { after, before, mock, test } from "node:test";
-import { Api, ApiError, NetworkError } from "../../static/workbench/api.js";
+import { Api, ApiError, NetworkError } from "../../static/base/api.js";
 
 let answer = () => {};
 let server;

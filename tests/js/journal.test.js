@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { mock, test } from "node:test";
-import { Journal } from "../../static/workbench/journal.js";
+import { Journal } from "../../static/saving/journal.js";
 import { later, settled } from "./saving_parts.js";
 
 /** A database that answers each write when the test says so. */

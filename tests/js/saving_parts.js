@@ -1,9 +1,9 @@
 /** What the tests of saving need: a server and a journal in memory, and people. */
-import { Activity } from "../../static/workbench/activity.js";
-import { annotation } from "../../static/workbench/annotation.js";
-import { ApiError, NetworkError } from "../../static/workbench/api.js";
-import { Saver } from "../../static/workbench/saver.js";
-import { Store } from "../../static/workbench/store.js";
+import { Activity } from "../../static/saving/activity.js";
+import { annotation } from "../../static/truth/annotation.js";
+import { ApiError, NetworkError } from "../../static/base/api.js";
+import { Saver } from "../../static/saving/saver.js";
+import { Store } from "../../static/truth/store.js";
 
 export const lost = () => {
   throw new NetworkError("no network");

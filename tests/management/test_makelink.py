@@ -6,7 +6,7 @@ import pytest
 from django.core.management import CommandError, call_command
 
 from gtm_hit.models import Dataset, Worker
-from gtm_hit.ops import tokens
+from gtm_hit.ops.work import links
 from tests.work_scene import make_dataset
 
 
@@ -21,14 +21,14 @@ def run(*arguments: str) -> str:
     return output.getvalue().strip()
 
 
-def entry(link: str) -> tokens.Entry:
-    return tokens.read_entry(link.split("/")[-2])
+def entry(link: str) -> links.Entry:
+    return links.read_entry(link.split("/")[-2])
 
 
 def test_it_prints_the_whole_link(dataset: Dataset) -> None:
     link = run("square", "--base-url", "https://marker.example/", "--platform", "panel")
     assert link.startswith("https://marker.example/join/")
-    assert entry(link) == tokens.Entry(dataset, "panel", None)
+    assert entry(link) == links.Entry(dataset, "panel", None)
 
 
 def test_a_personal_link_names_its_worker_and_creates_nothing(dataset: Dataset) -> None:

@@ -13,9 +13,9 @@ from django.core.management import CommandError, call_command
 from PIL import Image as Picture
 
 from gtm_hit.models import Layer
-from gtm_hit.ops import assignments, batches
 from gtm_hit.ops.quality.comparing import as_numbers, compare
-from gtm_hit.ops.quality.statistics_figures import FIGURES
+from gtm_hit.ops.quality.statistics.figures import FIGURES
+from gtm_hit.ops.work import assignments, batches
 from tests.ops.quality.scene import two_layers
 from tests.work_scene import finish, make_dataset, make_worker, row, save
 

@@ -11,7 +11,8 @@ import pytest
 from django.core.management import CommandError, call_command
 
 from gtm_hit.models import Dataset, Job, Layer
-from gtm_hit.ops import assignments, batches, jobs
+from gtm_hit.ops.jobs import queue
+from gtm_hit.ops.work import assignments, batches
 from gtm_hit.tasks import OPERATIONS
 from tests.ops.square_layer import fill, make_square
 from tests.work_scene import make_layer, make_worker
@@ -38,11 +39,11 @@ def run(*arguments: str) -> str:
 
 def an_export(layer: Layer) -> Job:
     parameters = {"layer": layer.name, "layer_id": layer.pk, "formats": ["csv"]}
-    return jobs.create(Job.Kind.EXPORT_LAYER, layer.dataset, parameters)
+    return queue.create(Job.Kind.EXPORT_LAYER, layer.dataset, parameters)
 
 
 def test_jobs_are_listed_the_newest_first_and_narrowed_down(truth: Layer) -> None:
-    first, second = an_export(truth), jobs.create(Job.Kind.IMPORT_DATASET, None, {})
+    first, second = an_export(truth), queue.create(Job.Kind.IMPORT_DATASET, None, {})
     listed = [json.loads(line)["id"] for line in run("jobs", "--json").splitlines()]
     assert listed == [second.pk, first.pk]
     (line,) = run("jobs", "--dataset", "square", "--state", "queued").splitlines()
@@ -53,14 +54,14 @@ def test_jobs_are_listed_the_newest_first_and_narrowed_down(truth: Layer) -> Non
 
 def test_a_job_is_awaited_and_its_result_told(truth: Layer) -> None:
     job = an_export(truth)
-    jobs.run(job.pk, OPERATIONS)
+    queue.run(job.pk, OPERATIONS)
     told = json.loads(run("jobs", str(job.pk), "--wait", "--json"))
     assert (told["state"], told["result"]["counts"]["annotations"] > 0) == ("done", True)
 
 
 def test_waiting_for_a_job_that_fails_fails(truth: Layer) -> None:
-    job = jobs.create(Job.Kind.EXPORT_LAYER, truth.dataset, {"layer_id": 0})
-    jobs.run(job.pk, OPERATIONS)
+    job = queue.create(Job.Kind.EXPORT_LAYER, truth.dataset, {"layer_id": 0})
+    queue.run(job.pk, OPERATIONS)
     with pytest.raises(CommandError, match=f"job {job.pk}: failed"):
         run("jobs", str(job.pk), "--wait")
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 
-from gtm_hit.formats import frame_column_row
+from gtm_hit.formats.annotations import frame_column_row
 from gtm_hit.metrics import tracking
 from gtm_hit.metrics.annotations import Annotations
 from tests.metrics import trackeval_scores

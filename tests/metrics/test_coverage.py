@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gtm_hit.formats.camera_json import load_cameras
+from gtm_hit.formats.calibration.cameras_json import load_cameras
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.metrics.annotations import MetricsError

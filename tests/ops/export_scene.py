@@ -40,7 +40,7 @@ def build() -> None:
 
 def start() -> None:
     from gtm_hit.models import Layer
-    from gtm_hit.ops import exporting
+    from gtm_hit.ops.exports import exporting
 
     print(exporting.start(Layer.objects.select_related("dataset").get(name=LAYER)).pk)
 

@@ -54,7 +54,7 @@ def compete(competitor: Callable[[], Any], barrier: Any, results: Any) -> None:
 
 def claiming() -> Contest:
     """50 workers, 40 batches."""
-    from gtm_hit.ops import assignments, batches
+    from gtm_hit.ops.work import assignments, batches
     from tests.work_scene import make_dataset, make_worker
 
     dataset = make_dataset("claiming", frames=80)
@@ -65,7 +65,7 @@ def claiming() -> Contest:
 
 def claiming_copies() -> Contest:
     """50 workers, 20 batches three times."""
-    from gtm_hit.ops import assignments, batches
+    from gtm_hit.ops.work import assignments, batches
     from tests.work_scene import make_dataset, make_worker
 
     dataset = make_dataset("copies", frames=20)
@@ -76,7 +76,7 @@ def claiming_copies() -> Contest:
 
 def one_worker() -> Contest:
     """One worker pressing the button in 20 tabs."""
-    from gtm_hit.ops import assignments, batches
+    from gtm_hit.ops.work import assignments, batches
     from tests.work_scene import make_dataset, make_worker
 
     dataset = make_dataset("tabs", frames=60)
@@ -90,7 +90,7 @@ def expired_batch() -> Contest:
     from django.utils import timezone
 
     from gtm_hit.models import Assignment
-    from gtm_hit.ops import assignments, batches
+    from gtm_hit.ops.work import assignments, batches
     from tests.work_scene import make_dataset, make_worker
 
     dataset = make_dataset("expired", frames=2)
@@ -103,14 +103,14 @@ def expired_batch() -> Contest:
 
 def arriving() -> Contest:
     """One id arriving 20 times."""
-    from gtm_hit.ops import workers
+    from gtm_hit.ops.work import workers
 
     return [lambda: workers.enter("panel", "The Same").pk] * 20
 
 
 def making_batches() -> Contest:
     """Ten people pressing the button."""
-    from gtm_hit.ops import batches
+    from gtm_hit.ops.work import batches
     from tests.work_scene import make_dataset
 
     dataset = make_dataset("making", frames=95)
@@ -149,7 +149,7 @@ def shared_save_id() -> Contest:
 
 def submitting() -> Contest:
     """One finished batch submitted ten times."""
-    from gtm_hit.ops import assignments, batches
+    from gtm_hit.ops.work import assignments, batches
     from tests.work_scene import do_frames, make_dataset, make_worker
 
     dataset = make_dataset("submitting", frames=2)
@@ -161,7 +161,7 @@ def submitting() -> Contest:
 
 def saving_and_submitting() -> Contest:
     """Saves racing with the submission: each is either in before it or refused."""
-    from gtm_hit.ops import assignments, batches
+    from gtm_hit.ops.work import assignments, batches
     from tests.work_scene import do_frames, make_dataset, make_worker, row, save
 
     dataset = make_dataset("saving", frames=10)
@@ -178,7 +178,7 @@ def saving_and_submitting() -> Contest:
 
 def looking_back() -> Contest:
     """No race: what the history says, which each database counts in its own way."""
-    from gtm_hit.ops.annotations import history, state_at
+    from gtm_hit.ops.frames.saving import history, state_at
     from tests.work_scene import make_dataset, make_layer, row, save
 
     dataset = make_dataset("history", frames=1)

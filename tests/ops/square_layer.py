@@ -12,9 +12,10 @@ import numpy as np
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Annotation, Dataset, Frame, Layer
 from gtm_hit.models import Camera as CameraRow
-from gtm_hit.ops import annotations, exporting
-from gtm_hit.ops.annotation_import.findings import Kind
-from gtm_hit.ops.annotation_import.layers import AnnotationSource, LayerReport, import_annotations
+from gtm_hit.ops.exports import exporting
+from gtm_hit.ops.frames import saving
+from gtm_hit.ops.layers.findings import Kind
+from gtm_hit.ops.layers.importing import AnnotationSource, LayerReport, import_annotations
 from tests.dataset_folder import VALUES, cameras
 from tests.work_scene import row
 
@@ -57,7 +58,7 @@ def fill(layer: Layer, people: int = 12, **values: Any) -> None:
 
 def save(layer: Layer, number: int, rows: list[dict[str, Any]]) -> None:
     frame = Frame.objects.get(dataset=layer.dataset, number=number)
-    annotations.save_frame(layer, frame, None, uuid.uuid4(), 0, rows, done=True, nobody=not rows)
+    saving.save_frame(layer, frame, None, uuid.uuid4(), 0, rows, done=True, nobody=not rows)
 
 
 def export(layer: Layer, folder: Path, *formats: str) -> Path:

@@ -9,10 +9,10 @@ from django.contrib.auth.models import User
 from django.core.files.uploadedfile import SimpleUploadedFile
 from django.test import Client
 
-from gtm_hit.formats.camera_json import save_cameras
+from gtm_hit.formats.calibration.cameras_json import save_cameras
 from gtm_hit.models import Annotation, Dataset, Job
-from gtm_hit.ops import jobs
-from gtm_hit.ops.importing.dataset import import_dataset
+from gtm_hit.ops.datasets.importing import import_dataset
+from gtm_hit.ops.jobs import queue
 from gtm_hit.tasks import OPERATIONS
 from tests.archives import made, zipped
 from tests.dataset_folder import add_calibrations, cameras, make_folder, options
@@ -55,7 +55,7 @@ def compared(staff: Client, tmp_path: Path) -> Job:
     response = staff.post("/datasets/square/calibration/", {"file": new_json(tmp_path), "tvec_unit": "m"})
     job = Job.objects.get(kind=Job.Kind.REPLACE_CALIBRATION)
     assert response["Location"] == f"/jobs/{job.pk}/"
-    jobs.run(job.pk, OPERATIONS)
+    queue.run(job.pk, OPERATIONS)
     return Job.objects.get(pk=job.pk)
 
 
@@ -145,7 +145,7 @@ def test_versions_are_listed_and_an_earlier_one_comes_back(staff: Client, tmp_pa
     response = staff.post("/datasets/square/calibration/versions/1/compare/")
     job = Job.objects.latest("pk")
     assert response["Location"] == f"/jobs/{job.pk}/" and middle() == 167
-    jobs.run(job.pk, OPERATIONS)
+    queue.run(job.pk, OPERATIONS)
     staff.post(f"/datasets/square/calibration/{job.pk}/confirm/")
     assert middle() == 160
 

@@ -8,7 +8,8 @@ from django.contrib.auth.models import User
 from django.test import Client
 
 from gtm_hit.models import Job, Layer, Release
-from gtm_hit.ops import jobs, releases
+from gtm_hit.ops.jobs import queue
+from gtm_hit.ops.releases import releasing
 from gtm_hit.tasks import OPERATIONS
 from tests.ops.square_layer import fill, make_square
 from tests.work_scene import make_layer
@@ -39,8 +40,8 @@ def layer() -> Layer:
 
 @pytest.fixture
 def made(layer: Layer, tmp_path: Path) -> Release:
-    order = releases.Order(layer, "Use it as you like.", "First light")
-    return releases.make_release(order, tmp_path / "partial", lambda *_: None)
+    order = releasing.Order(layer, "Use it as you like.", "First light")
+    return releasing.make_release(order, tmp_path / "partial", lambda *_: None)
 
 
 @pytest.fixture
@@ -76,7 +77,7 @@ def test_the_form_starts_a_job_that_makes_the_release(staff: Client, layer: Laye
     )
     job = Job.objects.get(kind=Job.Kind.MAKE_RELEASE)
     assert answer["Location"] == f"/jobs/{job.pk}/"
-    jobs.run(job.pk, OPERATIONS)
+    queue.run(job.pk, OPERATIONS)
     found = Release.objects.get()
     assert (found.title, found.created_by) == ("By form", User.objects.get())
     assert found.manifest["parameters"]["formats"] == ["coco", "csv"]

@@ -13,7 +13,9 @@ from django.test.utils import CaptureQueriesContext
 from django.utils import timezone
 
 from gtm_hit.models import Assignment, Batch, Dataset, Job, Layer, LayerFrame
-from gtm_hit.ops import assignments, batches, export_expiry, exporting, jobs
+from gtm_hit.ops.exports import expiry, exporting
+from gtm_hit.ops.jobs import queue
+from gtm_hit.ops.work import assignments, batches
 from tests.work_scene import add_frames, make_dataset, make_layer, make_worker
 
 PAGES = [
@@ -254,7 +256,7 @@ def test_a_form_from_elsewhere_is_refused(layer: Layer) -> None:
 def test_the_job_page_follows_the_job(staff: Client, job: Job) -> None:
     address = f"/jobs/{job.pk}/"
     assert "waiting" in text(staff.get(address)) and "Cancel" in text(staff.get(address))
-    run = jobs.claim(job.pk)
+    run = queue.claim(job.pk)
     assert run is not None
     run.report(40, 100, "writing frames: 4 of 10")
     page = text(staff.get(address))
@@ -269,16 +271,16 @@ def test_the_job_page_follows_the_job(staff: Client, job: Job) -> None:
 
 
 def test_an_expired_export_says_so_and_is_made_again(staff: Client, job: Job) -> None:
-    jobs.run(job.pk, {job.kind: exporting.run})
+    queue.run(job.pk, {job.kind: exporting.run})
     assert "Files kept until" in text(staff.get(f"/jobs/{job.pk}/"))
-    export_expiry.expire(timezone.now() + timedelta(days=31))
+    expiry.expire(timezone.now() + timedelta(days=31))
     page = text(staff.get(f"/jobs/{job.pk}/download/", follow=True))
     assert "kept for 30 days" in page and "Make it again" in page
     assert staff.post(f"/jobs/{job.pk}/retry/").url != f"/jobs/{job.pk}/"
 
 
 def test_the_files_of_an_export_can_be_deleted(staff: Client, job: Job) -> None:
-    jobs.run(job.pk, {job.kind: exporting.run})
+    queue.run(job.pk, {job.kind: exporting.run})
     assert "Delete files" in text(staff.get(f"/jobs/{job.pk}/"))
     page = text(staff.post(f"/jobs/{job.pk}/delete-files/", follow=True))
     assert "were deleted" in page and "Delete files" not in page
@@ -289,7 +291,7 @@ def test_a_job_without_files_says_that_there_are_none(staff: Client, job: Job) -
 
 
 def test_a_finished_export_can_be_downloaded(staff: Client, job: Job) -> None:
-    jobs.run(job.pk, {job.kind: exporting.run})
+    queue.run(job.pk, {job.kind: exporting.run})
     page = text(staff.get(f"/jobs/{job.pk}/"))
     assert "Download zip" in page and "annotations_positions/00000000.json" in page
     response = staff.get(f"/jobs/{job.pk}/download/")
@@ -372,5 +374,5 @@ def test_error_pages_need_no_context(name: str) -> None:
 
 
 def test_a_job_without_a_dataset_has_a_page_too(staff: Client, db: None) -> None:
-    job = jobs.create(Job.Kind.IMPORT_DATASET, None, {})
+    job = queue.create(Job.Kind.IMPORT_DATASET, None, {})
     assert "Import of a dataset" in text(staff.get(f"/jobs/{job.pk}/"))

@@ -6,8 +6,9 @@ from django.conf import settings
 from django.core.management.base import BaseCommand
 from django.utils import timezone
 
-from gtm_hit.ops import export_expiry, exporting, picture_cleanup, uploads
-from gtm_hit.ops.annotation_import import unfinished
+from gtm_hit.ops.exports import expiry, exporting
+from gtm_hit.ops.files import picture_cleanup, sources
+from gtm_hit.ops.layers import unfinished
 
 
 class Command(BaseCommand):
@@ -19,10 +20,10 @@ class Command(BaseCommand):
 
     def handle(self, *args: Any, **options: Any) -> None:
         exporting.remove_dead_partials()
-        uploads.remove_leftovers()
+        sources.remove_leftovers()
         pictures = picture_cleanup.remove_unused_pictures(timezone.now())
         unfinished.remove_abandoned(timezone.now())
-        count = export_expiry.expire(timezone.now())
+        count = expiry.expire(timezone.now())
         days = settings.EXPORT_KEEP_DAYS
         kept = f"exports are kept for {days} days" if days else "exports are kept for ever"
         if pictures:

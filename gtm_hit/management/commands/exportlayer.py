@@ -8,8 +8,8 @@ from django.core.management.base import BaseCommand, CommandError
 
 from gtm_hit.management.lookups import layer_named
 from gtm_hit.management.progress import ProgressLine
-from gtm_hit.ops import exporting
-from gtm_hit.ops.export_formats.registry import DEFAULT_FORMATS, FORMATS, chosen
+from gtm_hit.ops.exports import exporting
+from gtm_hit.ops.exports.formats.registry import DEFAULT_FORMATS, FORMATS, chosen
 
 
 class Command(BaseCommand):

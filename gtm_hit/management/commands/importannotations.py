@@ -10,10 +10,10 @@ from django.core.management.base import BaseCommand, CommandError
 
 from gtm_hit.management.lookups import dataset_named
 from gtm_hit.management.progress import ProgressLine
-from gtm_hit.ops.annotation_import.findings import Kind
-from gtm_hit.ops.annotation_import.layers import AnnotationSource, import_annotations
-from gtm_hit.ops.annotation_import.reading import READERS
-from gtm_hit.ops.importing.dataset import ImportFailed
+from gtm_hit.ops.datasets.importing import ImportFailed
+from gtm_hit.ops.layers.findings import Kind
+from gtm_hit.ops.layers.importing import AnnotationSource, import_annotations
+from gtm_hit.ops.layers.reading import READERS
 
 
 class Command(BaseCommand):

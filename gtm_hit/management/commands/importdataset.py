@@ -14,10 +14,10 @@ from gtm_hit.formats.problems import FormatError
 from gtm_hit.geometry.cylinder import FootRule
 from gtm_hit.management.progress import ProgressLine
 from gtm_hit.management.scene_command import SceneCommand
-from gtm_hit.ops import uploads
-from gtm_hit.ops.importing.calibrations import UNITS
-from gtm_hit.ops.importing.dataset import ImportFailed, ImportReport, import_dataset
-from gtm_hit.ops.importing.options import PRESETS, ImportOptions, SceneValues
+from gtm_hit.ops.calibration.cameras import UNITS
+from gtm_hit.ops.datasets.importing import ImportFailed, ImportReport, import_dataset
+from gtm_hit.ops.datasets.options import PRESETS, ImportOptions, SceneValues
+from gtm_hit.ops.files import sources
 
 Number = TypeVar("Number", int, float)
 
@@ -43,7 +43,7 @@ class Command(SceneCommand):
         progress = ProgressLine(self.stdout)
         unpacking = partial(progress, "unpacking, MB")
         try:
-            with uploads.extracted(options["folder"].absolute(), unpacking) as folder:
+            with sources.extracted(options["folder"].absolute(), unpacking) as folder:
                 report = import_dataset(read_options({**options, "folder": folder}), progress)
         except (ImportFailed, FormatError) as error:
             progress.finish()

@@ -12,10 +12,15 @@ from django.core.management.base import CommandError, CommandParser
 from gtm_hit.management.commands import importdataset
 from gtm_hit.management.progress import ProgressLine
 from gtm_hit.management.scene_command import SceneCommand
-from gtm_hit.ops.importing.dataset import ImportFailed
-from gtm_hit.ops.importing.options import PRESETS, ImportOptions
-from gtm_hit.ops.videos.importing import VideoReport, import_videos
-from gtm_hit.ops.videos.options import SourceError, VideoOptions, VideoSource, parse_source
+from gtm_hit.ops.datasets.importing import ImportFailed
+from gtm_hit.ops.datasets.options import PRESETS, ImportOptions
+from gtm_hit.ops.datasets.videos.importing import VideoReport, import_videos
+from gtm_hit.ops.datasets.videos.options import (
+    SourceError,
+    VideoOptions,
+    VideoSource,
+    parse_source,
+)
 
 
 class Command(SceneCommand):

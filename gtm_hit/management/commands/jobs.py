@@ -10,7 +10,8 @@ from django.core.management.base import BaseCommand, CommandError
 from gtm_hit.management.lookups import dataset_named
 from gtm_hit.management.progress import ProgressLine
 from gtm_hit.models import Job
-from gtm_hit.ops import jobs, overview
+from gtm_hit.ops import overview
+from gtm_hit.ops.jobs import queue
 
 SHOWN = 50
 SECONDS_BETWEEN_LOOKS = 1.0
@@ -44,11 +45,11 @@ class Command(BaseCommand):
         if options["wait"]:
             found = self.wait(found)
         elif options["cancel"]:
-            jobs.cancel(found)
+            queue.cancel(found)
         elif options["retry"]:
             if not found.finished:
                 raise CommandError(f"job {job} is still under way")
-            found = jobs.retry(found)
+            found = queue.retry(found)
         found = by_number(found.pk)
         self.tell([found], options["json"])
         if options["wait"] and found.state != Job.State.DONE:

@@ -5,7 +5,7 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
 from gtm_hit.management.lookups import dataset_named
-from gtm_hit.ops import batches
+from gtm_hit.ops.work import batches
 
 
 class Command(BaseCommand):

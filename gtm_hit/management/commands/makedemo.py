@@ -7,8 +7,8 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
 from gtm_hit.management.progress import ProgressLine
-from gtm_hit.ops.demo import DemoError, make_demo
-from gtm_hit.ops.importing.dataset import ImportFailed
+from gtm_hit.ops.datasets.demo import DemoError, make_demo
+from gtm_hit.ops.datasets.importing import ImportFailed
 
 
 class Command(BaseCommand):

@@ -6,7 +6,7 @@ from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.urls import reverse
 
 from gtm_hit.management.lookups import dataset_named
-from gtm_hit.ops import entry_links, tokens, workers
+from gtm_hit.ops.work import entry_links, links, workers
 
 
 class Command(BaseCommand):
@@ -40,5 +40,5 @@ class Command(BaseCommand):
             entry_links.reopen(dataset, platform)
         elif not worker and entry_links.state(dataset, platform).closed_at:
             raise CommandError("The link is closed; --open makes a new one.")
-        token = tokens.entry_token(dataset, platform, external_id)
+        token = links.entry_token(dataset, platform, external_id)
         self.stdout.write(base_url.rstrip("/") + reverse("join", args=[token]))

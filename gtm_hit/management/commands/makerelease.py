@@ -9,8 +9,9 @@ from django.core.management.base import BaseCommand, CommandError
 
 from gtm_hit.management.lookups import layer_named
 from gtm_hit.management.progress import ProgressLine
-from gtm_hit.ops import exporting, releases
-from gtm_hit.ops.export_formats.registry import FORMATS
+from gtm_hit.ops.exports import exporting
+from gtm_hit.ops.exports.formats.registry import FORMATS
+from gtm_hit.ops.releases import releasing
 
 
 class Command(BaseCommand):
@@ -24,10 +25,10 @@ class Command(BaseCommand):
         parser.add_argument(
             "--format",
             type=lambda text: text.split(","),
-            default=releases.FORMATS,
+            default=releasing.FORMATS,
             metavar="FORMAT,FORMAT",
             dest="formats",
-            help=f"{', '.join(FORMATS)} (default: {', '.join(releases.FORMATS)})",
+            help=f"{', '.join(FORMATS)} (default: {', '.join(releasing.FORMATS)})",
         )
 
     def handle(self, *, slug: str, layer: str, licence: Path, **options: Any) -> None:
@@ -35,9 +36,9 @@ class Command(BaseCommand):
         progress = ProgressLine(self.stderr)
         try:
             text = licence.read_text(encoding="utf-8")
-            order = releases.Order(found, text, options["title"], options["formats"])
+            order = releasing.Order(found, text, options["title"], options["formats"])
             partial = settings.RELEASES_ROOT / slug / ".partial"
-            release = releases.make_release(order, partial, progress)
+            release = releasing.make_release(order, partial, progress)
         except exporting.ExportError as error:
             raise CommandError(str(error)) from error
         except UnicodeDecodeError as error:
@@ -49,5 +50,5 @@ class Command(BaseCommand):
         counts = release.manifest["counts"]
         self.stdout.write(
             f"Release {release.number}: {counts['frames']} frames, {counts['annotations']} annotations: "
-            f"{releases.folder_of(release)}\nSHA-256 of manifest.json {release.manifest_digest}"
+            f"{releasing.folder_of(release)}\nSHA-256 of manifest.json {release.manifest_digest}"
         )

@@ -8,7 +8,7 @@ from django.core.management.base import BaseCommand, CommandError
 
 from gtm_hit.management.lookups import dataset_named
 from gtm_hit.models import Release
-from gtm_hit.ops import releases
+from gtm_hit.ops.releases import releasing
 
 
 class Command(BaseCommand):
@@ -19,12 +19,12 @@ class Command(BaseCommand):
         parser.add_argument("number", type=int, nargs="?", help="only this one")
         parser.add_argument("--json", action="store_true", help="print one object per release and line")
         parser.add_argument(
-            "--print", choices=releases.PARTS, dest="part", help="print this file of the release NUMBER"
+            "--print", choices=releasing.PARTS, dest="part", help="print this file of the release NUMBER"
         )
 
     def handle(self, *, slug: str, number: int | None, part: str | None, **options: Any) -> None:
         dataset = dataset_named(slug)
-        found = releases.releases(dataset)
+        found = releasing.releases(dataset)
         if number is not None:
             found = found.filter(number=number)
             if not found:
@@ -38,9 +38,9 @@ class Command(BaseCommand):
     def print_part(self, release: Release | None, part: str) -> None:
         if release is None:
             raise CommandError("--print takes the NUMBER of a release")
-        if releases.part_of(release, part) is None:
+        if releasing.part_of(release, part) is None:
             raise CommandError(f"{part} of release {release.number} is not on this machine")
-        self.stdout.write(releases.text_of(release, part), ending="")
+        self.stdout.write(releasing.text_of(release, part), ending="")
 
 
 def facts(release: Any) -> dict[str, Any]:
@@ -53,7 +53,7 @@ def facts(release: Any) -> dict[str, Any]:
         "counts": release.counts,
         "manifest_digest": release.manifest_digest,
         "created_at": release.created_at.isoformat(),
-        "archive": str(releases.archive_of(release)),
+        "archive": str(releasing.archive_of(release)),
     }
 
 

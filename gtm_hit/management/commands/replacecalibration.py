@@ -14,9 +14,9 @@ from gtm_hit.management.lookups import dataset_named
 from gtm_hit.management.progress import ProgressLine
 from gtm_hit.models import Dataset
 from gtm_hit.ops.calibration import versions
+from gtm_hit.ops.calibration.cameras import UNITS
 from gtm_hit.ops.calibration.reading import read_replacement
 from gtm_hit.ops.calibration.replacing import ReplacementError, preview, replace_calibration
-from gtm_hit.ops.importing.calibrations import UNITS
 
 HEADER = (
     f"{'camera':10}{'boxes':>10}{'moved':>10}{'median':>8}{'95 %':>8}{'most':>8}{'appear':>10}{'vanish':>10}"

@@ -9,10 +9,15 @@ from django.core.management.base import BaseCommand, CommandError
 
 from gtm_hit.formats.files import write_bytes
 from gtm_hit.management.lookups import layer_named
-from gtm_hit.ops.quality.statistics import EVERY, ground_coverage, layer_statistics, unmeasurable
-from gtm_hit.ops.quality.statistics_figures import FIGURES
-from gtm_hit.ops.quality.statistics_files import PICTURES, numbers_csv
-from gtm_hit.ops.quality.statistics_numbers import DISTRIBUTIONS, as_numbers
+from gtm_hit.ops.quality.statistics.figures import FIGURES
+from gtm_hit.ops.quality.statistics.files import PICTURES, numbers_csv
+from gtm_hit.ops.quality.statistics.measuring import (
+    EVERY,
+    ground_coverage,
+    layer_statistics,
+    unmeasurable,
+)
+from gtm_hit.ops.quality.statistics.numbers import DISTRIBUTIONS, as_numbers
 
 
 class Command(BaseCommand):

@@ -9,13 +9,13 @@ from django.contrib.auth.models import User
 from django.db import transaction
 from django.utils import timezone
 
-from gtm_hit.formats.camera_json import camera_facts
+from gtm_hit.formats.calibration.cameras_json import camera_facts
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Dataset, Job
-from gtm_hit.ops import jobs
 from gtm_hit.ops.calibration import replacing, versions
 from gtm_hit.ops.calibration.replacing import ReplacementError
-from gtm_hit.ops.jobs_progress import percents
+from gtm_hit.ops.jobs import queue
+from gtm_hit.ops.jobs.progress import percents
 
 SHARES = {replacing.RECTANGLES: (0, 60), replacing.COMPARING: (60, 100)}
 
@@ -32,7 +32,7 @@ def start(
         "source": source,
         "version": version or None,
     }
-    return jobs.create_once(Job.Kind.REPLACE_CALIBRATION, dataset, parameters, user)
+    return queue.create_once(Job.Kind.REPLACE_CALIBRATION, dataset, parameters, user)
 
 
 def start_version(dataset: Dataset, number: int, user: User | None = None) -> Job:
@@ -41,7 +41,7 @@ def start_version(dataset: Dataset, number: int, user: User | None = None) -> Jo
     return start(dataset, versions.cameras_in(found), user, found.source, number)
 
 
-def run(mine: jobs.Run) -> dict[str, Any]:
+def run(mine: queue.Run) -> dict[str, Any]:
     assert mine.job.dataset is not None
     return replacing.preview(mine.job.dataset, cameras_of(mine.job), percents(mine, SHARES))
 

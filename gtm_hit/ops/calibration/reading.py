@@ -8,14 +8,14 @@ from tempfile import TemporaryDirectory
 from django.conf import settings
 from django.core.files.uploadedfile import UploadedFile
 
-from gtm_hit.formats.calibration_files import CAMERAS_JSON, CalibrationFiles, find_calibrations
+from gtm_hit.formats.calibration.files import CAMERAS_JSON, CalibrationFiles, find_calibrations
 from gtm_hit.formats.dataset_folder import DatasetFolder
 from gtm_hit.formats.files import write_bytes
 from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Dataset
-from gtm_hit.ops import uploads
-from gtm_hit.ops.importing.calibrations import tell_wrong_unit, views_of
+from gtm_hit.ops.calibration.cameras import tell_wrong_unit, views_of
+from gtm_hit.ops.files import sources
 
 MOST_BYTES = 10_000_000  # of an upload
 
@@ -66,8 +66,8 @@ def _unpacked(folder: Path, file: UploadedFile) -> Path:
         return path
     archive, path = folder / "calibration.zip", folder / "calibration"
     write_bytes(archive, file.read())
-    uploads.unpack(archive, path, lambda _done, _total: None)
-    return uploads.dataset_folder(path)
+    sources.unpack(archive, path, lambda _done, _total: None)
+    return sources.dataset_folder(path)
 
 
 def _files(path: Path, names: list[str], problems: ProblemList) -> CalibrationFiles:

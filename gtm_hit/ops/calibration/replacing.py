@@ -19,7 +19,7 @@ from gtm_hit.models import Annotation, Calibration, Dataset, Image, Layer, Save
 from gtm_hit.ops.calibration import comparison as compared
 from gtm_hit.ops.calibration import versions
 from gtm_hit.ops.calibration.comparison import Comparison, Moved, Person
-from gtm_hit.ops.jobs_progress import Progress
+from gtm_hit.ops.jobs.progress import Progress
 
 PEOPLE_TOGETHER = 20_000
 RECTANGLES, COMPARING = "computing rectangles", "comparing boxes"

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from django.contrib.auth.models import User
 from django.db.models import Max, QuerySet
 
-from gtm_hit.formats.camera_json import cameras_content, cameras_of, content_digest
+from gtm_hit.formats.calibration.cameras_json import cameras_content, cameras_of, content_digest
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Calibration, Dataset
 

@@ -13,7 +13,7 @@ from gtm_hit.metrics.agreement import Agreement, PairAgreement, WorkerBias
 from gtm_hit.metrics.matching import RADIUS
 from gtm_hit.models import Assignment, Dataset
 from gtm_hit.ops.quality.layer_rows import read_layers
-from gtm_hit.ops.quality.statistics_numbers import plain
+from gtm_hit.ops.quality.statistics.numbers import plain
 
 FINISHED = [Assignment.State.SUBMITTED, Assignment.State.ACCEPTED]
 

@@ -26,7 +26,7 @@ from gtm_hit.ops.quality.layer_rows import (
     saved_numbers,
     state_of,
 )
-from gtm_hit.ops.quality.statistics_numbers import plain
+from gtm_hit.ops.quality.statistics.numbers import plain
 
 MOST_FRAMES = 2000  # compared for a page; a command compares all
 LARGEST_RADIUS = 10.0  # metres

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from django.core.files.uploadedfile import UploadedFile
 
-from gtm_hit.formats import frame_column_row
+from gtm_hit.formats.annotations import frame_column_row
 from gtm_hit.formats.problems import FormatError, Problem
 from gtm_hit.metrics import detection
 from gtm_hit.metrics.annotations import Annotations, MetricsError

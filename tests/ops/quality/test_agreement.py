@@ -8,8 +8,8 @@ from django.db import connection
 from django.test.utils import CaptureQueriesContext
 
 from gtm_hit.models import Assignment, Dataset
-from gtm_hit.ops import assignments, batches
 from gtm_hit.ops.quality.agreement import as_numbers, batch_agreements, shared_batches
+from gtm_hit.ops.work import assignments, batches
 from tests.work_scene import add_frames, do_frames, make_dataset, make_worker, row, save
 
 PLACES = np.array([[0.0, 0.0], [2.0, 1.0], [-3.0, 2.0]])

@@ -12,9 +12,9 @@ import pytest
 
 from gtm_hit.metrics.annotations import Annotations
 from gtm_hit.models import Camera, Dataset, Layer
-from gtm_hit.ops.quality.statistics import ground_coverage, layer_statistics
-from gtm_hit.ops.quality.statistics_figures import FIGURES, figure
-from gtm_hit.ops.quality.statistics_numbers import as_numbers, csv_header, csv_lines
+from gtm_hit.ops.quality.statistics.figures import FIGURES, figure
+from gtm_hit.ops.quality.statistics.measuring import ground_coverage, layer_statistics
+from gtm_hit.ops.quality.statistics.numbers import as_numbers, csv_header, csv_lines
 from tests.browser.street import cameras
 from tests.metrics.scenes import crossing_people
 from tests.ops.quality.scene import put, two_layers, walk

@@ -1,0 +1,1 @@
+"""What all REST endpoints share: who asks, how bodies are read, how refusals read."""

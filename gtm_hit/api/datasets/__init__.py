@@ -1,0 +1,1 @@
+"""Datasets, their frames, layers and imports."""

@@ -1,0 +1,1 @@
+"""Comparison, agreement, evaluation, statistics."""

@@ -1,0 +1,1 @@
+"""Files of people: one module a format."""

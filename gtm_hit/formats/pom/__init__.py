@@ -1,0 +1,1 @@
+"""The POM file of rectangles."""

@@ -1,0 +1,1 @@
+"""Layers go out as files of many formats."""

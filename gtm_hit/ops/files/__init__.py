@@ -1,0 +1,1 @@
+"""Bytes that come in and stay: sources of imports, pictures by their digest."""

@@ -1,0 +1,1 @@
+"""Who stands where in one frame of one layer: rules, saves, revisions."""

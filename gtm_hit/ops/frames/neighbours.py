@@ -1,0 +1,57 @@
+"""People just outside a batch, for carrying over across its border: only from accepted assignments."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from gtm_hit.models import Annotation, Assignment, Batch, Frame
+from gtm_hit.ops.frames.rules import Row
+from gtm_hit.ops.frames.saving import ROW_FIELDS
+
+# Frames on each side: as many as a movement is read from.
+REACH = 4
+
+
+@dataclass(frozen=True)
+class NeighbourFrame:
+    number: int
+    annotations: list[Row]
+
+
+@dataclass(frozen=True)
+class Neighbours:
+    """Frames beside a batch, nearest first."""
+
+    before: list[NeighbourFrame] = field(default_factory=list)
+    after: list[NeighbourFrame] = field(default_factory=list)
+
+
+def neighbours(batch: Batch) -> Neighbours:
+    """At most five queries; one when nothing beside the batch is accepted."""
+    accepted = accepted_beside(batch)
+    return Neighbours(
+        before=nearest_frames(accepted.get(batch.number - 1), "-number"),
+        after=nearest_frames(accepted.get(batch.number + 1), "number"),
+    )
+
+
+def accepted_beside(batch: Batch) -> dict[int, Assignment]:
+    """By batch number; where several copies were accepted, the one of this batch's own copy."""
+    found = Assignment.objects.select_related("batch").filter(
+        batch__dataset=batch.dataset_id,
+        batch__number__in=[batch.number - 1, batch.number + 1],
+        state=Assignment.State.ACCEPTED,
+    )
+    own_copy_last = sorted(found, key=lambda one: (one.batch.copy == batch.copy, -one.batch.copy))
+    return {one.batch.number: one for one in own_copy_last}
+
+
+def nearest_frames(assignment: Assignment | None, order: str) -> list[NeighbourFrame]:
+    if assignment is None:
+        return []
+    frames = list(Frame.objects.filter(batches=assignment.batch_id).order_by(order)[:REACH])
+    people: dict[int, list[Row]] = {frame.pk: [] for frame in frames}
+    rows = Annotation.objects.filter(layer=assignment.layer_id, frame__in=frames).order_by("person")
+    for row in rows.values("frame_id", *ROW_FIELDS):
+        people[row.pop("frame_id")].append(row)
+    return [NeighbourFrame(frame.number, people[frame.pk]) for frame in frames]

@@ -1,0 +1,1 @@
+"""Long work: rows that are queued, claimed, reported on and finished."""

@@ -1,0 +1,1 @@
+"""What a paper prints about a layer: numbers, figures, tables."""

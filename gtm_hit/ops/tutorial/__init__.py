@@ -1,0 +1,1 @@
+"""The lesson every worker can take, and the exercise it is made from."""

@@ -1,0 +1,1 @@
+"""What all pages share: who may see them, texts and modules of the workbench."""

@@ -1,0 +1,1 @@
+"""Datasets: list, overview, imports."""

@@ -1,0 +1,95 @@
+from __future__ import annotations
+
+from django.conf import settings
+from django.core.paginator import Paginator
+from django.http import HttpResponse
+from django.shortcuts import redirect, render
+from django.urls import path
+from django.utils.translation import gettext as _
+from django.views.decorators.http import require_http_methods
+
+from gtm_hit.formats.problems import FormatError
+from gtm_hit.models import Job
+from gtm_hit.ops import overview
+from gtm_hit.ops.datasets import job as import_jobs
+from gtm_hit.ops.files import sources
+from gtm_hit.pages.common.access import StaffRequest, staff_only
+from gtm_hit.pages.common.uploads import takes_uploads
+from gtm_hit.pages.datasets.forms import DatasetForm, VideosForm
+
+ROWS_PER_PAGE = 20
+KINDS = [Job.Kind.IMPORT_DATASET, Job.Kind.IMPORT_VIDEOS]
+
+
+@require_http_methods(["GET", "HEAD", "POST"])
+@takes_uploads
+def new_dataset(request: StaffRequest) -> HttpResponse:
+    form = DatasetForm(request.POST or None, request.FILES or None)
+    if request.method == "POST" and form.is_valid() and (source := _chosen(form)):
+        return redirect("job", pk=import_jobs.start_import(source, form.options(), request.user).pk)
+    found = overview.jobs().filter(kind__in=KINDS)
+    context = {
+        "section": "datasets",
+        "tab": "images",
+        "form": form,
+        "most_bytes": sources.most_bytes(),
+        "most_megabytes": settings.MAX_UPLOAD_MB,
+        "incoming": settings.INCOMING_ROOT,
+        "page": Paginator(found, ROWS_PER_PAGE).get_page(request.GET.get("page")),
+    }
+    return render(request, "staff/imports/new.html", context)
+
+
+@require_http_methods(["GET", "HEAD", "POST"])
+@staff_only
+def new_videos(request: StaffRequest) -> HttpResponse:
+    folder = sources.source(request.GET.get("source", ""))
+    initial = {"source": folder.key, "videos": _suggested(folder)} if folder else {}
+    form = VideosForm(request.POST or None, initial=initial)
+    if (
+        request.method == "POST"
+        and form.is_valid()
+        and (source := sources.source(form.cleaned_data["source"]))
+    ):
+        cleaned = form.cleaned_data
+        job = import_jobs.start_videos(
+            source,
+            form.options(),
+            cleaned["videos"],
+            cleaned["start"] or 0.0,
+            cleaned["until"],
+            request.user,
+        )
+        return redirect("job", pk=job.pk)
+    context = {
+        "section": "datasets",
+        "tab": "videos",
+        "form": form,
+        "folders": [each for each in sources.sources() if not each.is_archive],
+        "incoming": settings.INCOMING_ROOT,
+    }
+    return render(request, "staff/imports/videos.html", context)
+
+
+def _chosen(form: DatasetForm) -> sources.Source | None:
+    """The archive just uploaded, or the source on the server; None with the form's errors."""
+    archive = form.cleaned_data.get("archive")
+    if not archive:
+        return sources.source(form.cleaned_data["source"])
+    try:
+        return sources.keep(archive)
+    except FormatError as error:
+        for problem in error.problems:
+            form.add_error("archive", ": ".join(part for part in (problem.place, problem.reason) if part))
+        return None
+
+
+def _suggested(folder: sources.Source) -> str:
+    lines = [f"{name.stem} = {name} @ 0" for name in sources.videos(folder)]
+    return "\n".join(lines) or _("No videos lie in this folder.")
+
+
+urlpatterns = [
+    path("imports/", new_dataset, name="imports"),
+    path("imports/videos/", new_videos, name="import-videos"),
+]

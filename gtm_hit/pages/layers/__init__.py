@@ -1,0 +1,1 @@
+"""Layers of a dataset: list, export, import."""

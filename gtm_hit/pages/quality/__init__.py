@@ -1,0 +1,1 @@
+"""Comparison, statistics, evaluation of text files."""

@@ -1,0 +1,1 @@
+"""Batches for managers, and the workers' own pages."""

@@ -1,0 +1,203 @@
+"""A worker's way: entry link, start page, tutorial, workbench, code. Only a pressed button takes anything."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import timedelta
+from functools import wraps
+from typing import Any
+
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import get_object_or_404, redirect, render
+from django.urls import get_script_prefix, path, reverse
+from django.views.decorators.cache import never_cache
+from django.views.decorators.http import require_http_methods, require_POST, require_safe
+
+from gtm_hit.models import Layer, Worker
+from gtm_hit.ops.frames import parts
+from gtm_hit.ops.tutorial import lesson
+from gtm_hit.ops.work import assignments, limits, links, unsaved_leases, workers
+from gtm_hit.pages.common import browsers
+from gtm_hit.pages.common.access import staff_only
+from gtm_hit.pages.common.address import client_address
+from gtm_hit.pages.common.catalog import workbench_catalog
+from gtm_hit.pages.common.modules import imported_by
+
+# The names under which platforms put their worker's id into the address.
+ID_PARAMETERS = ["worker_id", "workerId", "PROLIFIC_PID", "participant_id"]
+# Whoever tries out ids of others is stopped; at a lab of two hundred a few come with another browser.
+NOT_PROVEN = limits.Limit("not proven", 60, timedelta(hours=1))
+PREVIEW = "ASSIGNMENT_ID_NOT_AVAILABLE"
+
+View = Callable[..., HttpResponse]
+
+
+def valid_links_only(view: View) -> View:
+    """A link that is not ours, cut off or revoked gets a page that says what to do."""
+
+    @wraps(view)
+    def guarded(request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponse:
+        try:
+            return view(request, *args, **kwargs)
+        except links.BadToken:
+            return render(request, "work/bad_link.html", status=404)
+
+    return guarded
+
+
+@require_http_methods(["GET", "HEAD", "POST"])
+@never_cache
+@valid_links_only
+def join(request: HttpRequest, token: str) -> HttpResponse:
+    entry = links.read_entry(token)
+    given = request.POST if request.method == "POST" else request.GET
+    external_id = entry.external_id or next((given[name] for name in ID_PARAMETERS if given.get(name)), "")
+    context = {
+        "dataset": entry.dataset,
+        "external_id": external_id,
+        "ask": not external_id,
+        "preview": request.GET.get("assignmentId") == PREVIEW,
+        "tutorial": lesson.available(),
+    }
+    if context["preview"]:
+        return render(request, "work/join.html", context)
+    try:
+        if found := whoever_enters(request, entry, external_id):
+            return found
+    except workers.InvalidWorkerId as error:
+        return render(request, "work/join.html", {**context, "ask": True, "problem": str(error)}, status=400)
+    if entry.closed:
+        return render(request, "work/closed.html", context, status=410)
+    return render(request, "work/join.html", context)
+
+
+def whoever_enters(request: HttpRequest, entry: links.Entry, external_id: str) -> HttpResponse | None:
+    """The way on for those who may go on; who else is known here, nobody learns by opening a link."""
+    if entry.external_id:
+        return personal_entry(request, entry, entry.external_id)
+    secret = browsers.secret_of(request)
+    if external_id and (worker := workers.proven(entry.platform, external_id, secret)):
+        return to_home(worker, entry)
+    if request.method != "POST" or entry.closed:
+        return None
+    return first_entry(request, entry, external_id)
+
+
+def personal_entry(request: HttpRequest, entry: links.Entry, external_id: str) -> HttpResponse | None:
+    if request.method != "POST" and workers.find(entry.platform, external_id) is None:
+        return None
+    secret = browsers.secret_of(request)
+    return browsers.remember(to_home(workers.enter(entry.platform, external_id, secret), entry), secret)
+
+
+def first_entry(request: HttpRequest, entry: links.Entry, external_id: str) -> HttpResponse:
+    address = client_address(request)
+    if wait := NOT_PROVEN.wait(address):
+        return render(request, "work/not_proven.html", {"wait": wait}, status=429)
+    secret = browsers.secret_of(request)
+    try:
+        worker = workers.enter_by_general_link(entry.platform, external_id, secret)
+    except workers.NotProven:
+        NOT_PROVEN.count(address)
+        return render(request, "work/not_proven.html", status=403)
+    return browsers.remember(to_home(worker, entry), secret)
+
+
+def to_home(worker: Worker, entry: links.Entry) -> HttpResponse:
+    return redirect("work-home", token=links.worker_token(worker, entry.dataset))
+
+
+@require_safe
+@never_cache
+@valid_links_only
+def home(request: HttpRequest, token: str) -> HttpResponse:
+    seat = links.read_worker(token)
+    current = assignments.current(seat.worker, seat.dataset)
+    finished = list(assignments.finished(seat.worker, seat.dataset))
+    context = {
+        "token": token,
+        "dataset": seat.dataset,
+        "worker": seat.worker,
+        "current": current,
+        "done": len(assignments.done_frames(current)) if current else 0,
+        "total": current.batch.frames.count() if current else 0,
+        "finished": finished,
+        "summary": assignments.summary(finished[0]) if finished and not current else None,
+        "work_left": current is not None or assignments.work_left(seat.worker, seat.dataset),
+        "tutorial": lesson.available(),
+    }
+    return render(request, "work/home.html", context)
+
+
+@require_POST
+@valid_links_only
+def start(request: HttpRequest, token: str) -> HttpResponse:
+    seat = links.read_worker(token)
+    try:
+        assignment = assignments.claim(seat.worker, seat.dataset, client_address(request))
+    except unsaved_leases.TooManyUnsaved:
+        context = {"token": token, "dataset": seat.dataset}
+        return render(request, "work/too_many.html", context, status=429)
+    except assignments.NoFreeBatch:
+        return render(request, "work/no_batch.html", {"token": token, "dataset": seat.dataset})
+    except assignments.BusyElsewhere as busy:
+        context = {
+            "dataset": busy.assignment.batch.dataset,
+            "link": reverse("annotate", args=[links.assignment_token(busy.assignment)]),
+        }
+        return render(request, "work/busy.html", context)
+    return redirect("annotate", token=links.assignment_token(assignment))
+
+
+@require_safe
+@never_cache
+@valid_links_only
+def learn(request: HttpRequest, token: str) -> HttpResponse:
+    links.read_worker(token)
+    home_url = reverse("work-home", args=[token])
+    if not lesson.available():
+        return redirect(home_url)
+    return workbench(request, api=api("tutorial/"), token=token, mode="tutorial", home=home_url)
+
+
+@require_safe
+@never_cache
+@valid_links_only
+def annotate(request: HttpRequest, token: str) -> HttpResponse:
+    assignment = links.read_assignment(token)
+    seat_token = links.worker_token(assignment.worker, assignment.batch.dataset)
+    if assignments.read_only_reason(assignment) == "expired":
+        return render(request, "work/expired.html", {"token": seat_token, "assignment": assignment})
+    home_url = reverse("work-home", args=[seat_token])
+    return workbench(request, api=api("assignment/"), token=token, mode="assignment", home=home_url)
+
+
+@require_safe
+@staff_only
+@never_cache
+def layer(request: HttpRequest, slug: str, name: str) -> HttpResponse:
+    found = get_object_or_404(Layer, dataset__slug=slug, name=name)
+    home_url = reverse("dataset-layers", args=[slug])
+    asked = request.GET.get("from", "")
+    part = parts.part_of(found, int(asked) if asked.isdecimal() and len(asked) < 10 else None)
+    address = api(f"layers/{found.pk}/") + (f"from/{part.first}/" if part else "")
+    return workbench(request, api=address, token="", mode="layer", home=home_url)
+
+
+def api(path: str) -> str:
+    return f"{get_script_prefix()}api/v1/{path}"
+
+
+def workbench(request: HttpRequest, **context: str) -> HttpResponse:
+    parts = {"catalog": workbench_catalog(request), "modules": imported_by("workbench/main.js")}
+    return render(request, "workbench.html", {**context, **parts})
+
+
+urlpatterns = [
+    path("join/<str:token>/", join, name="join"),
+    path("work/<str:token>/", home, name="work-home"),
+    path("work/<str:token>/start/", start, name="work-start"),
+    path("work/<str:token>/tutorial/", learn, name="work-tutorial"),
+    path("annotate/<str:token>/", annotate, name="annotate"),
+    path("datasets/<slug:slug>/layers/<str:name>/", layer, name="layer"),
+]

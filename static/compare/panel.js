@@ -1,0 +1,64 @@
+import { element } from "../base/dom.js";
+import { gettext, ngettext } from "../base/messages.js";
+import { KINDS, signOf } from "./marks.js";
+
+/** The side panel: what the frame's line of the table says, and everybody in it, mistakes first. */
+export class MarksPanel {
+  constructor(store, names, select) {
+    this._store = store;
+    this._names = names;
+    this._select = select;
+    this._counts = element("p", { className: "counts" });
+    this._list = element("ul", { className: "people marks", role: "listbox", "aria-label": gettext("People") });
+    this.element = element(
+      "aside",
+      { className: "panel" },
+      element("h2", {}, gettext("People in this frame")),
+      this._counts,
+      this._list,
+      element("p", { className: "details" }, gettext("Ring: {truth} · dot: {found}", names)),
+    );
+    for (const name of ["frame", "marks"]) store.on(name, () => this.show());
+    store.on("selection", () => this._showSelection());
+    this.show();
+  }
+
+  show() {
+    const { line } = this._store;
+    this._counts.replaceChildren(
+      ...Object.keys(KINDS).map((kind) => {
+        const count = kind === "matched" ? line.matched - line.swapped : line[kind];
+        return element("span", {}, signOf(kind), ` ${count} ${KINDS[kind].words()}`);
+      }),
+    );
+    this._list.replaceChildren(...this._store.marks().map((mark) => this._row(mark)));
+    this._showSelection();
+  }
+
+  _row(mark) {
+    return element(
+      "li",
+      { role: "option", "data-kind": mark.kind, "data-key": mark.key, onclick: () => this._select(mark.key) },
+      signOf(mark.kind),
+      element("span", { className: "number" }, String((mark.truth ?? mark.found).person)),
+      element("span", { className: "state" }, this._told(mark)),
+    );
+  }
+
+  _told({ kind, truth, found, before, distance }) {
+    const centimetres = Math.round((distance ?? 0) * 1000) / 10;
+    if (kind === "missed") return gettext("missed");
+    if (kind === "extra") return gettext("extra");
+    const away = ngettext("{n} cm off", "{n} cm off", centimetres);
+    if (kind === "swapped") return gettext("was {before}, now {now}, {away}", { before, now: found.person, away });
+    return truth.person === found.person ? away : gettext("found as {now}, {away}", { now: found.person, away });
+  }
+
+  _showSelection() {
+    for (const row of this._list.children) {
+      const chosen = row.dataset.key === String(this._store.selection);
+      row.setAttribute("aria-selected", String(chosen));
+      if (chosen) row.scrollIntoView({ block: "nearest" });
+    }
+  }
+}

@@ -1,0 +1,56 @@
+import { ask } from "../base/dialogs.js";
+import { element } from "../base/dom.js";
+import { gettext } from "../base/messages.js";
+
+/**
+ * Somebody else (or another tab) changed the same people: ask for each whose version stays.
+ * @returns {Promise<Map<number, "ours"|"theirs">>}
+ */
+export async function askAboutConflicts(scene, store, { frame, conflicts, author, savedAt }) {
+  const place = store.numbers.indexOf(frame) + 1;
+  const rows = conflicts.map((conflict) => conflictRow(scene, conflict, otherWords(author, savedAt)));
+  const question = {
+    title: gettext("Frame {place} was changed in two places", { place }),
+    body: [
+      gettext("Everything else was put together. For these people, which one is right?"),
+      gettext("Both stay in the history of the frame."),
+      element("div", { className: "conflicts" }, rows),
+    ],
+    buttons: [{ id: "apply", label: gettext("Use these"), main: true }],
+  };
+  while ((await ask(question)) !== "apply"); // Escape decides nothing
+  return new Map(
+    conflicts.map(({ person }, index) => [person, rows[index].querySelector("input:checked").value]),
+  );
+}
+
+/** Who the other is, as far as is known: another tab does not say. */
+function otherWords(author, savedAt) {
+  if (!author) return gettext("the other");
+  const time = new Date(savedAt).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" });
+  return gettext("the other, by {author} at {time}", { author, time });
+}
+
+function conflictRow(scene, { person, ours, theirs }, other) {
+  const choice = (value, text, annotation, checked) =>
+    element(
+      "label",
+      {},
+      element("input", { type: "radio", name: `person-${person}`, value, checked }),
+      `${text}: ${describe(scene, annotation)}`,
+    );
+  return element(
+    "fieldset",
+    {},
+    element("legend", {}, gettext("Person {person}", { person })),
+    choice("ours", gettext("mine"), ours, true),
+    choice("theirs", other, theirs, false),
+  );
+}
+
+function describe(scene, annotation) {
+  if (!annotation) return gettext("removed");
+  const { x, y } = scene.metres(annotation.position);
+  const state = annotation.state === "carried" ? gettext("carried over") : gettext("validated");
+  return gettext("at {x} m, {y} m, {state}", { x: x.toFixed(2), y: y.toFixed(2), state });
+}

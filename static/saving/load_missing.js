@@ -1,0 +1,18 @@
+import { failureWords } from "../base/failure_words.js";
+import { gettext } from "../base/messages.js";
+
+/** Make sure frames of a long layer are there. @returns {Promise<boolean>} false: said that they could not be loaded */
+export async function loadMissing({ store, loader, notices }, numbers) {
+  const missing = numbers.filter((number) => !store.frame(number).loaded);
+  try {
+    await loader.loadAll(missing);
+    return true;
+  } catch (error) {
+    sayNotLoaded(notices, error);
+    return false;
+  }
+}
+
+function sayNotLoaded(notices, error) {
+  notices.say(gettext("Not possible now: the other frames could not be loaded, {reason}", { reason: failureWords(error) }));
+}

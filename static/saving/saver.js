@@ -1,0 +1,342 @@
+import { annotation, carriedOf } from "../truth/annotation.js";
+import { ApiError, NetworkError } from "../base/api.js";
+import { baseOf, isSame, plain, readRecord, recordOf, stateOf } from "./edit_record.js";
+import { Emitter } from "../base/emitter.js";
+import { uuid4 } from "../base/identifiers.js";
+import { mergeFlag, mergePeople } from "../truth/merge.js";
+
+const DELAY = 700; // ms from an edit to its save
+const FIRST_RETRY = 1000;
+const SLOWEST_RETRY = 30_000;
+const ROUNDS = 4; // of a flush: a save under way, what was edited meanwhile, and what was put together after it
+const REFUSALS = [400, 404, 413]; // sending the same again would not help
+
+/**
+ * Saves whole frames. What has been sent is sent again, unchanged and under the same save id, until it is
+ * answered: an answer lost on the way can then never look like somebody else's edit.
+ *
+ * Events: `status` (look at `status()`), `conflict` {frame, conflicts, author, savedAt} (or ask `conflicts()`),
+ * `renumber` {from, to, frames}: a new person of ours got another number, because somebody else had taken it.
+ */
+export class Saver extends Emitter {
+  /** @param {{practice: boolean}} parts in practice (the tutorial) nothing is saved */
+  constructor({ api, store, journal, activity, practice = false }) {
+    super();
+    this._api = api;
+    this._store = store;
+    this._journal = journal;
+    this._activity = activity;
+    this._slots = new Map();
+    this._trouble = null; // "offline" | "server" | "signed_out"
+    this._retry = 0;
+    this._timer = null;
+    this._readOnly = null;
+    if (!practice) store.on("change", ({ frames, source }) => this._onChange(frames, source));
+  }
+
+  /** Take the server's state of a frame as the base of the next edits. */
+  install(state) {
+    const { number } = state;
+    const added = this._slots.get(number)?.added ?? new Set();
+    this._slots.set(number, { base: baseOf(state), sending: null, busy: null, edits: 0, added, question: null, refused: null });
+    this._store.install(number, baseOf(state), "server");
+  }
+
+  /** The server's state of a frame that was asked for anew: what was edited or saved meanwhile stays. */
+  refresh(state) {
+    const slot = this._slots.get(state.number);
+    if (slot.edits === 0 && slot.base.revision <= state.revision) return this.install(state);
+    // A save that has begun brings the newer state itself.
+    if (slot.edits && !slot.sending && !slot.question && slot.base.revision < state.revision) this._merge(state.number, slot, state);
+  }
+
+  /** Edits of an earlier visit that the server may not have: they go on from where they started. */
+  adopt(record) {
+    const { frame } = record;
+    const slot = this._slots.get(frame);
+    if (!slot) return;
+    const kept = readRecord(record);
+    const untouched = slot.edits === 0;
+    if (untouched && kept.base.revision !== undefined) this._goOn(frame, slot, kept);
+    else {
+      const base = slot.base;
+      if (untouched) this._store.install(frame, kept.ours, "journal");
+      this._bringTogether(frame, slot, kept.base, untouched ? base : kept.ours, "journal");
+    }
+    for (const person of kept.added) slot.added.add(person);
+    slot.edits += kept.edits;
+    this._activity.giveBack(frame, kept.seconds);
+    this._keep(frame, slot);
+    this._schedule(0);
+  }
+
+  _goOn(frame, slot, { base, ours, sending, question }) {
+    Object.assign(slot, { base, sending, question });
+    this._store.install(frame, ours, "journal");
+  }
+
+  revision(frame) {
+    return this._slots.get(frame)?.base.revision ?? 0;
+  }
+
+  get unsaved() {
+    let edits = 0;
+    for (const slot of this._slots.values()) edits += slot.edits;
+    return edits;
+  }
+
+  /** @returns {Set<number>} frames with edits the server has not acknowledged */
+  unsavedFrames() {
+    return new Set([...this._slots].filter(([, { edits }]) => edits > 0).map(([frame]) => frame));
+  }
+
+  /** @returns {{kind: "saved"|"saving"|"offline"|"server"|"signed_out"|"conflict"|"refused"|"read_only", unsaved, …}} */
+  status() {
+    const unsaved = this.unsaved;
+    const slots = [...this._slots.values()];
+    if (this._readOnly !== null) return { kind: "read_only", reason: this._readOnly, unsaved };
+    if (slots.some((slot) => slot.question)) return { kind: "conflict", unsaved };
+    const refused = slots.find((slot) => slot.refused);
+    if (refused) return { kind: "refused", reason: refused.refused, unsaved };
+    if (this._trouble) return { kind: this._trouble, unsaved, kept: this._journal.keeps };
+    return { kind: unsaved ? "saving" : "saved", unsaved };
+  }
+
+  /** Why nothing may be changed, or null. */
+  get readOnly() {
+    return this._readOnly;
+  }
+
+  makeReadOnly(reason) {
+    this._readOnly = reason;
+    this.emit("status");
+  }
+
+  /** Save at once; resolves when everything that could be sent has been answered, also what was under way. */
+  async flush() {
+    clearTimeout(this._timer);
+    this._timer = null;
+    await this._underWay();
+    for (let round = 0; round < ROUNDS && (round === 0 || this._canGoOn()); round += 1) {
+      await Promise.all([...this._slots.keys()].map((frame) => this._send(frame)));
+    }
+    this.emit("status");
+    return this.unsaved === 0;
+  }
+
+  async _underWay() {
+    await Promise.all([...this._slots.values()].map(({ busy }) => busy));
+  }
+
+  _canGoOn() {
+    return this._trouble === null && [...this._slots.values()].some((slot) => this._isToSend(slot));
+  }
+
+  /** The page goes away: the browser delivers these on its own; the journal has them too. */
+  sendOnLeaving() {
+    for (const [frame, slot] of this._slots) {
+      if (!slot.busy) this._send(frame, { keepalive: true });
+    }
+  }
+
+  /** Try again now: the network is back, or the annotator has signed in in another tab. */
+  wake() {
+    this._retry = 0;
+    if (this.unsaved) this._schedule(0);
+  }
+
+  /** What the annotator has to decide, also from before a reload: {frame, conflicts, author, savedAt} each. */
+  conflicts() {
+    return [...this._slots.values()].map(({ question }) => question).filter(Boolean);
+  }
+
+  /** The annotator decided: per person, "ours" or "theirs". */
+  resolve(frame, choices) {
+    const slot = this._slots.get(frame);
+    const edits = slot.question.conflicts
+      .filter(({ person }) => choices.get(person) === "theirs")
+      .map(({ person, theirs }) => ({ frame, person, after: theirs ?? null }));
+    slot.question = null;
+    this._store.apply(edits);
+    this._settle(frame, slot);
+  }
+
+  _onChange(frames, source) {
+    if (source !== "edit") return;
+    for (const frame of frames) {
+      const slot = this._slots.get(frame);
+      if (!slot) continue;
+      slot.edits += 1;
+      slot.refused = null;
+      this._keep(frame, slot);
+    }
+    this._schedule(DELAY);
+    this.emit("status");
+  }
+
+  _keep(frame, slot) {
+    this._journal.write(frame, () => recordOf(slot, this._store.frame(frame), this._activity.waiting(frame)));
+  }
+
+  /** The first edit starts the clock; later ones don't push it back. */
+  _schedule(delay) {
+    if (this._timer !== null && delay > 0) return;
+    clearTimeout(this._timer);
+    this._timer = setTimeout(() => {
+      this._timer = null;
+      for (const frame of this._slots.keys()) this._send(frame);
+    }, delay);
+  }
+
+  _isToSend(slot) {
+    return slot.edits > 0 && !slot.question && !slot.refused && this._readOnly === null;
+  }
+
+  /** @returns {Promise<void>} when it has been answered; never rejects */
+  _send(frame, options = {}) {
+    const slot = this._slots.get(frame);
+    if (slot.busy) return slot.busy;
+    if (!this._isToSend(slot)) return Promise.resolve();
+    slot.sending ??= this._prepare(frame, slot);
+    if (!slot.sending) {
+      this.emit("status"); // undone before it was ever sent: all is saved again
+      return Promise.resolve();
+    }
+    this._keep(frame, slot);
+    slot.busy = this._deliver(frame, slot, options);
+    return slot.busy;
+  }
+
+  async _deliver(frame, slot, options) {
+    const retry = this._retry; // of all that are sent together, so that they make one step of waiting longer
+    const { answer, error } = await this._asked(frame, slot.sending.body, options);
+    slot.busy = null;
+    if (error) this._fail(frame, slot, error, retry);
+    else this._acknowledge(frame, slot, answer);
+    if (slot.edits && !this._trouble) this._schedule(DELAY);
+    this.emit("status");
+  }
+
+  async _asked(frame, body, options) {
+    try {
+      const answer = await this._api.saveFrame(frame, body, options);
+      if (Number.isInteger(answer?.revision)) return { answer };
+      return { error: new ApiError(200, "unreadable", "the answer is no receipt") }; // somebody else's, on the way
+    } catch (error) {
+      return { error };
+    }
+  }
+
+  _prepare(frame, slot) {
+    const now = this._store.frame(frame);
+    if (isSame(now, slot.base)) {
+      slot.edits = 0;
+      this._journal.clear(frame);
+      return null;
+    }
+    const saveId = uuid4();
+    const body = { save_id: saveId, revision: slot.base.revision, ...plain(now), seconds: this._activity.take(frame) };
+    return { saveId, body, edits: slot.edits };
+  }
+
+  _acknowledge(frame, slot, answer) {
+    this._trouble = null;
+    this._retry = 0;
+    const base = { revision: answer.revision, ...stateOf(slot.sending.body) };
+    for (const person of base.people.keys()) if (!slot.base.people.has(person)) slot.added.add(person);
+    slot.base = base;
+    slot.edits -= slot.sending.edits;
+    slot.sending = null;
+    this._settle(frame, slot);
+  }
+
+  /** After an answer: nothing left to say, or more to send. */
+  _settle(frame, slot) {
+    if (isSame(this._store.frame(frame), slot.base)) {
+      slot.edits = 0;
+      this._journal.clear(frame);
+    } else {
+      slot.edits = Math.max(1, slot.edits);
+      this._keep(frame, slot);
+      this._schedule(DELAY);
+    }
+    this.emit("status");
+  }
+
+  _fail(frame, slot, error, retry) {
+    const known = error instanceof ApiError && error.code !== "unknown";
+    if (known && error.code === "stale") return this._merge(frame, slot, error.details.current);
+    if (known && error.code === "read_only") return this.makeReadOnly(error.message);
+    if (known && REFUSALS.includes(error.status)) return this._refuse(frame, slot, error);
+    if (known && error.code === "save_id_used") this._takeBack(frame, slot); // the next try has an id of its own
+    this._trouble = troubleOf(error);
+    this._retry = Math.min(SLOWEST_RETRY, Math.max(FIRST_RETRY, retry * 2));
+    this._schedule(this._retry);
+  }
+
+  /** What was sent was not written, for certain. */
+  _takeBack(frame, slot) {
+    if (slot.sending) this._activity.giveBack(frame, slot.sending.body.seconds);
+    slot.sending = null;
+  }
+
+  /** The server has a newer state: both sides' people come together, or the annotator is asked. */
+  _merge(frame, slot, current) {
+    const theirs = baseOf(current);
+    const { base } = slot;
+    this._takeBack(frame, slot);
+    slot.base = theirs;
+    this._trouble = null;
+    this._bringTogether(frame, slot, base, theirs, "server", { author: current.author, savedAt: current.saved_at });
+    this._settle(frame, slot);
+  }
+
+  /** The frame as the store has it, and `theirs`, which both come from `base`. */
+  _bringTogether(frame, slot, base, theirs, source, { author = "", savedAt = null } = {}) {
+    const now = this._store.frame(frame);
+    const ours = now.people;
+    const { people, conflicts, renumber } = mergePeople(base.people, ours, theirs.people);
+    const nobody = mergeFlag(base.nobody, now.nobody, theirs.nobody) && people.size === 0;
+    const finished = carriedOf(people).length === 0 && (people.size > 0 || nobody);
+    this._store.install(frame, { people, nobody, done: mergeFlag(base.done, now.done, theirs.done) && finished }, source);
+    for (const person of renumber) this._renumber(frame, ours.get(person));
+    if (!conflicts.length) return;
+    slot.question = { frame, conflicts, author, savedAt };
+    this.emit("conflict", slot.question);
+  }
+
+  /** Somebody else gave away the same number: our new person gets another one, wherever we have put it. */
+  _renumber(frame, one) {
+    const { person: from } = one;
+    const to = this._store.takePerson();
+    const others = [...this._slots].filter(([number, slot]) => number !== frame && this._isOurs(slot, number, from)).map(([number]) => number);
+    const moved = (number, old) => ({ frame: number, person: to, after: annotation({ ...old, person: to }) });
+    this._store.apply([
+      moved(frame, one),
+      ...others.flatMap((number) => [
+        { frame: number, person: from, after: null },
+        moved(number, this._store.person(from, number)),
+      ]),
+    ]);
+    this.emit("renumber", { from, to, frames: [frame, ...others] });
+  }
+
+  _isOurs(slot, frame, person) {
+    return this._store.person(person, frame) !== undefined && (slot.added.has(person) || !slot.base.people.has(person));
+  }
+
+  _refuse(frame, slot, error) {
+    const places = Array.isArray(error.details) ? error.details.map(({ place, reason }) => `${place}: ${reason}`) : [];
+    slot.refused = places.length ? places.join("; ") : error.message;
+    this._takeBack(frame, slot);
+    this._keep(frame, slot);
+  }
+}
+
+/** @returns {"signed_out"|"offline"|"server"} */
+function troubleOf(error) {
+  if (error instanceof NetworkError) return "offline";
+  if (error instanceof ApiError) return error.signedOut ? "signed_out" : "server";
+  console.error(error); // nobody foresaw it: tried again, less and less often, like everything else
+  return "server";
+}

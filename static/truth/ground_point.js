@@ -1,0 +1,46 @@
+/** What is to be said about a place on the ground before somebody is put there. Pure. */
+import { gettext } from "../base/messages.js";
+
+const NEAR = 0.5; // metres from the border that are worth a word
+
+/**
+ * @param {{x: number, y: number}|null} ground metres; null above the horizon
+ * @returns {{ground, position: number|null, occupant, border: number|null,
+ *            problem: "horizon"|"outside"|"occupied"|null}} `border`: metres inside the border, negative outside
+ */
+export function spotOn(scene, store, ground, except = null) {
+  if (!ground) return { ground, position: null, occupant: null, border: null, problem: "horizon" };
+  const position = scene.positionAt(ground);
+  const border = insideBy(scene.grid, ground);
+  if (position === null) return { ground, position, occupant: null, border, problem: "outside" };
+  const occupant = store.occupant(position, except);
+  return { ground, position, occupant, border, problem: occupant ? "occupied" : null };
+}
+
+/** Metres inside the border of the grid; negative outside. */
+export function insideBy({ origin, extent, step }, { x, y }) {
+  const [dx, dy] = [x - origin[0] + step / 2, y - origin[1] + step / 2]; // half a step around the outermost positions
+  const inside = Math.min(dx, dy, extent[0] - dx, extent[1] - dy);
+  if (inside >= 0) return inside;
+  return -Math.hypot(Math.max(-dx, dx - extent[0], 0), Math.max(-dy, dy - extent[1], 0));
+}
+
+/**
+ * The lines beside the pointer: where it is, and what there is to say about it.
+ * @param {boolean} byTable a view that knows no horizon, only whose feet are where
+ */
+export function spotWords(scene, spot, byTable = false) {
+  if (spot.problem === "horizon" && byTable) return [gettext("no feet in the ground area")];
+  if (spot.problem === "horizon") return [gettext("above the horizon")];
+  const { x, y } = spot.position === null ? spot.ground : scene.metres(spot.position);
+  const where = gettext("x {x}  y {y} m", { x: x.toFixed(3), y: y.toFixed(3) });
+  const remark = spotRemark(spot);
+  return remark ? [where, remark] : [where];
+}
+
+function spotRemark({ problem, occupant, border }) {
+  if (problem === "outside") return gettext("{metres} m outside the ground area", { metres: Math.max(-border, 0.01).toFixed(2) });
+  if (problem === "occupied") return gettext("person {person} stands exactly here", { person: occupant.person });
+  if (border < NEAR) return gettext("{metres} m to the border", { metres: border.toFixed(2) });
+  return null;
+}

@@ -1,0 +1,190 @@
+import { predictPeople } from "../../truth/propagation.js";
+import { paintCrop } from "../../views/crop_paint.js";
+import { bestViews } from "../../views/crops.js";
+import { element, setText } from "../../base/dom.js";
+import { between } from "../../truth/keyframes.js";
+import { gettext } from "../../base/messages.js";
+import { paintSoon } from "../../base/repaint.js";
+import { unit } from "../../base/scale.js";
+
+const VIEWS = 3; // crops per frame
+const REACH = 5; // frames on each side of the open one, where all do not fit
+const GAP = 2; // CSS pixels between crops
+const HEAD = 16; // CSS pixels for the frame's number
+
+/**
+ * The selected person over all frames of the batch, in the three views that show the person best; a click goes
+ * there. One canvas; a crop is painted again only when its picture or its box changed.
+ */
+export class Filmstrip {
+  constructor({ scene, store, loader, images, walk, panes, settings }) {
+    Object.assign(this, { scene, store, loader, images, walk, panes, settings });
+    this._fetching = null;
+    this._painted = new Map(); // cell → what it shows
+    this._canvas = element("canvas", {});
+    this._buttons = element("div", { className: "filmstrip-frames" });
+    this._note = element("p", { className: "filmstrip-note" });
+    this.element = element("section", { className: "filmstrip", "aria-label": gettext("The selected person over the frames") }, this._canvas, this._buttons, this._note);
+    this._observer = new ResizeObserver(() => this._resize());
+    this._observer.observe(this._canvas);
+    for (const event of ["change", "selection", "frame"]) store.on(event, () => this._later());
+    images.on("picture", () => this._later());
+    settings.watch("filmstrip", (shown) => this._show(shown));
+  }
+
+  get shown() {
+    return !this.element.hidden;
+  }
+
+  _show(shown) {
+    this.element.hidden = !shown;
+    this.walk.lookAround(shown ? REACH : 0);
+    if (shown) this._later();
+  }
+
+  _later() {
+    if (this.shown) paintSoon(this);
+  }
+
+  _resize() {
+    const [width, height] = [this._canvas.clientWidth / unit(), this._canvas.clientHeight / unit()];
+    if (!width || !height) return;
+    this._ratio = (window.devicePixelRatio || 1) * unit();
+    Object.assign(this._canvas, { width: Math.round(width * this._ratio), height: Math.round(height * this._ratio) });
+    this._room = { width, height };
+    this._painted.clear();
+    this.paint();
+  }
+
+  paint() {
+    const person = this.store.selection ?? this.walk.held;
+    setText(this._note, person === null ? gettext("Select somebody to see the person over all frames here") : "");
+    if (!this._room) return;
+    if (person === null) return this._clear();
+    const numbers = this._numbers();
+    const steps = numbers.map((number) => this._step(person, number));
+    const known = steps.filter(({ here }) => here).map(({ one }) => one);
+    const views = bestViews(this.scene, known, VIEWS);
+    const layout = `${person} ${numbers} ${views}`;
+    if (layout !== this._layout) this._arrange(layout, person, numbers, views);
+    steps.forEach((step, column) => this._paintFrame(step, column, numbers.length, views));
+  }
+
+  /** The frames there is room for: all of a batch, of a long layer those around the open one. */
+  _numbers() {
+    const { numbers, current } = this.store;
+    const most = 2 * REACH + 1;
+    if (numbers.length <= most) return numbers;
+    const first = Math.max(0, Math.min(numbers.indexOf(current) - REACH, numbers.length - most));
+    return numbers.slice(first, first + most);
+  }
+
+  /** The person in a frame, or where one would look for him. */
+  _step(person, number) {
+    if (!this.store.frame(number).loaded) {
+      this._fetch(number);
+      return { number, here: false, one: null };
+    }
+    const here = this.store.person(person, number);
+    if (here) return { number, here: true, one: here };
+    const middle = between(this.store, this.scene, person, number);
+    return { number, here: false, one: middle ?? this._expected(person, number) };
+  }
+
+  /** A piece of a long layer at a time; when the network is away, the next repaint asks again. */
+  _fetch(number) {
+    const done = () => (this._fetching = null);
+    this._fetching ??= this.loader.load(number, false).then(done, done);
+  }
+
+  _expected(person, number) {
+    const { store, scene } = this;
+    const distance = (one) => Math.abs(one - number);
+    const known = store.numbers.filter((one) => store.person(person, one)).sort((one, other) => distance(one) - distance(other));
+    const sources = known
+      .filter((one) => one > number === known[0] > number)
+      .map((one) => ({ time: scene.seconds(one), people: new Map([[person, store.person(person, one)]]) }));
+    return predictPeople(scene.grid, scene.seconds(number), sources)[0] ?? null;
+  }
+
+  _clear() {
+    this._layout = null;
+    this._painted.clear();
+    this._buttons.replaceChildren();
+    this._context().clearRect(0, 0, this._room.width, this._room.height);
+  }
+
+  /** Other frames or views: everything is painted anew, and every frame gets its button. */
+  _arrange(layout, person, numbers, views) {
+    this._clear();
+    this._layout = layout;
+    this._buttons.replaceChildren(...numbers.map((number) => this._button(person, number, views)));
+  }
+
+  _button(person, number, views) {
+    const place = this.store.numbers.indexOf(number) + 1;
+    const label = gettext("Person {person} in frame {place}", { person, place });
+    return element("button", { type: "button", "aria-label": label, title: label, onclick: (event) => this._go(event, person, number, views) });
+  }
+
+  /** A click in a crop also makes its view the active one. */
+  async _go(event, person, number, views) {
+    const { left, width } = event.currentTarget.getBoundingClientRect();
+    const view = views[Math.floor(((event.clientX - left) / width) * views.length)];
+    if (event.detail > 0) event.currentTarget.blur();
+    await this.walk.jump(number);
+    if (this.store.current !== number) return; // it could not be loaded
+    this.store.select(person);
+    const pane = this.panes.all.find((one) => one.view.index === view);
+    if (pane && event.detail > 0) this.panes.activate(pane);
+  }
+
+  _paintFrame(step, column, columns, views) {
+    const { number, one, here } = step;
+    const width = this._room.width / columns;
+    const left = column * width;
+    const current = number === this.store.current;
+    const across = (width - GAP * (views.length + 1)) / Math.max(1, views.length);
+    const cells = views.map((view, index) => ({
+      x: left + GAP + index * (across + GAP),
+      y: HEAD,
+      width: across,
+      height: this._room.height - HEAD - GAP,
+      view,
+      picture: this._picture(number, view),
+    }));
+    const shows = [one, here, current, ...cells.map(({ picture }) => picture)];
+    if (same(shows, this._painted.get(number))) return;
+    this._painted.set(number, shows);
+    const ctx = this._context();
+    ctx.clearRect(left, 0, width, this._room.height);
+    this._paintHead(ctx, left, width, number, current);
+    for (const cell of cells) paintCrop(ctx, this.scene, cell, one, here);
+  }
+
+  _paintHead(ctx, left, width, number, current) {
+    const style = getComputedStyle(this.element);
+    ctx.fillStyle = current ? style.outlineColor : style.color;
+    ctx.font = `${current ? 700 : 400} 11px system-ui, 'DejaVu Sans', sans-serif`;
+    ctx.textAlign = "center";
+    ctx.textBaseline = "middle";
+    ctx.fillText(String(this.store.numbers.indexOf(number) + 1), left + width / 2, HEAD / 2);
+    if (current) ctx.fillRect(left + GAP, HEAD - 2, width - 2 * GAP, 2);
+  }
+
+  /** Light is enough; full resolution where it is there anyway. */
+  _picture(number, view) {
+    const full = this.images.peek(number, view, "full");
+    return full ?? this.images.get(number, view, "light").bitmap;
+  }
+
+  _context() {
+    const ctx = this._canvas.getContext("2d");
+    ctx.setTransform(this._ratio, 0, 0, this._ratio, 0, 0);
+    return ctx;
+  }
+}
+
+function same(one, other) {
+  return other !== undefined && one.length === other.length && one.every((value, index) => value === other[index]);
+}

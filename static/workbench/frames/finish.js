@@ -1,0 +1,76 @@
+import { carriedOf } from "../../truth/annotation.js";
+import { ApiError } from "../../base/api.js";
+import { ask } from "../../base/dialogs.js";
+import { element } from "../../base/dom.js";
+import { failureWords } from "../../base/failure_words.js";
+import { gettext, ngettext } from "../../base/messages.js";
+
+/** What there is to say about every frame of a batch before it is handed in. */
+export function summary(store) {
+  return store.numbers.map((number, index) => {
+    const { people, done } = store.frame(number);
+    return { number, place: index + 1, people: people.size, carried: carriedOf(people).length, done };
+  });
+}
+
+/** The summary after the last frame; submits, or jumps to a frame. */
+export async function finishAssignment({ store, saver, api, walk, notices, home }) {
+  const saved = await saver.flush();
+  const rows = summary(store);
+  const unfinished = rows.filter(({ done }) => !done);
+  const waiting = element("p", { role: "status", hidden: saved }, saved ? "" : gettext("Some edits are not saved yet; wait until “All saved” is shown."));
+  const answered = ask({
+    title: unfinished.length
+      ? ngettext("{n} frame is not finished yet", "{n} frames are not finished yet", unfinished.length)
+      : gettext("All {n} frames are done", { n: rows.length }),
+    body: [table(rows), waiting],
+    buttons: [
+      { id: "submit", label: gettext("Submit"), main: true, disabled: unfinished.length > 0 || !saved },
+      ...(unfinished.length ? [{ id: "first", label: gettext("Go to the first unfinished frame") }] : []),
+      { id: "stay", label: gettext("Back to annotating") },
+    ],
+  });
+  const stop = saver.on("status", () => {
+    if (saver.unsaved) return;
+    waiting.hidden = true;
+    waiting.closest("dialog").querySelector('[data-answer="submit"]').disabled = unfinished.length > 0;
+  });
+  const answer = await answered.finally(stop);
+  if (answer === "first") return walk.open(unfinished[0].number);
+  if (answer?.startsWith("frame ")) return walk.open(Number(answer.slice(6)));
+  if (answer === "submit") return submit({ api, walk, notices, home });
+}
+
+async function submit({ api, walk, notices, home }) {
+  try {
+    await api.submit();
+    window.location.assign(home);
+  } catch (error) {
+    const frames = error instanceof ApiError && error.code === "unfinished" ? error.details.frames : [];
+    notices.say(gettext("Not submitted: {reason}", { reason: failureWords(error) }));
+    if (frames.length) return walk.open(frames[0]);
+  }
+}
+
+function table(rows) {
+  const head = [gettext("Frame"), gettext("People"), gettext("State"), ""];
+  return element(
+    "table",
+    { className: "summary" },
+    element("thead", {}, element("tr", {}, head.map((text) => element("th", { scope: "col" }, text)))),
+    element("tbody", {}, rows.map(tableRow)),
+  );
+}
+
+function tableRow({ number, place, people, carried, done }) {
+  const state = done ? gettext("done") : carried ? ngettext("{n} yellow", "{n} yellow", carried) : gettext("not finished");
+  const go = (event) => event.target.closest("dialog").close(`frame ${number}`);
+  return element(
+    "tr",
+    { className: done ? "done" : "open" },
+    element("td", {}, String(place)),
+    element("td", {}, String(people)),
+    element("td", {}, state),
+    element("td", {}, element("button", { type: "button", className: "quiet", onclick: go }, gettext("Open"))),
+  );
+}

@@ -1,0 +1,78 @@
+import { Emitter } from "../../base/emitter.js";
+
+/** Plays through the frames, only looking. Never skips a frame: it waits for pictures. Emits `change`. */
+export class Playback extends Emitter {
+  constructor({ scene, store, images, walk, settings }) {
+    super();
+    Object.assign(this, { scene, store, images, walk, settings });
+    this._request = null;
+    this._due = 0;
+    // Whoever clicks or edits wants to work on what is shown now.
+    this._onPointer = (event) => event.target.closest("[data-action=play]") || this.stop();
+    store.on("change", ({ source }) => source === "edit" && this.stop());
+  }
+
+  get playing() {
+    return this._request !== null;
+  }
+
+  toggle() {
+    if (this.playing) this.stop();
+    else this.start();
+  }
+
+  /** From here, or from the first frame when this is the last. */
+  start() {
+    const { store, walk } = this;
+    if (store.numbers.length < 2) return;
+    walk.lookAhead(true);
+    if (store.neighbour(1) === undefined) this._show(store.numbers[0]);
+    this._due = performance.now() + this._interval;
+    document.addEventListener("pointerdown", this._onPointer, { capture: true });
+    this._ask();
+    this.emit("change");
+  }
+
+  /** Where it stops one can work: the frame is opened as if one had gone there. */
+  stop() {
+    if (!this.playing) return;
+    cancelAnimationFrame(this._request);
+    this._request = null;
+    document.removeEventListener("pointerdown", this._onPointer, { capture: true });
+    this.walk.lookAhead(false);
+    this.emit("change");
+    this.walk.jump(this.store.current);
+  }
+
+  get _interval() {
+    return (1000 * this.scene.dataset.seconds_per_frame) / this.settings.get("playSpeed");
+  }
+
+  _ask() {
+    this._request = requestAnimationFrame((now) => this._tick(now));
+  }
+
+  _tick(now) {
+    const next = this.store.neighbour(1);
+    if (next === undefined) return this.stop();
+    if (now >= this._due && this._ready(next)) {
+      // Keep the beat; after a wait for pictures, or in a hidden tab, start a new one.
+      this._due = now - this._due < this._interval ? this._due + this._interval : now + this._interval;
+      this._show(next);
+    }
+    this._ask();
+  }
+
+  /** A frame that cannot be loaded ends the film where it is. */
+  async _show(number) {
+    if (!(await this.walk.look(number))) this.stop();
+  }
+
+  /** A picture that failed for good does not hold up the others. */
+  _ready(number) {
+    return this.scene.cameras.every(({ index }) => {
+      const { bitmap, status } = this.images.get(number, index, "light");
+      return bitmap !== null || status === "error";
+    });
+  }
+}

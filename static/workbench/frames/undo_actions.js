@@ -1,0 +1,55 @@
+import { loadMissing } from "../../saving/load_missing.js";
+import { gettext } from "../../base/messages.js";
+
+const STEPS = {
+  undo: {
+    nothing: () => gettext("Nothing to undo"),
+    done: (label) => gettext("Undone: {label}", { label }),
+    there: (label, place) => gettext("Undone in frame {place}: {label}", { label, place }),
+  },
+  redo: {
+    nothing: () => gettext("Nothing to redo"),
+    done: (label) => gettext("Done again: {label}", { label }),
+    there: (label, place) => gettext("Done again in frame {place}: {label}", { label, place }),
+  },
+};
+
+/** Back and forth through everything that was done: goes to the frame it was done in, and says what it was. */
+export class UndoActions {
+  constructor({ store, history, loader, notices, guard }) {
+    Object.assign(this, { store, history, loader, notices, guard });
+    this._loading = false;
+  }
+
+  /** Rows for the table of actions, by the ids of the key table. */
+  table() {
+    return { undo: () => this.step("undo"), redo: () => this.step("redo") };
+  }
+
+  /** Frames that a long layer has not loaded yet come first; otherwise it happens at once. */
+  step(direction) {
+    if (this._loading || this.guard.refused()) return;
+    const missing = this.history.framesOf(direction).filter((number) => !this.store.frame(number).loaded);
+    if (missing.length) this._loadThenStep(missing, direction);
+    else this._step(direction);
+  }
+
+  async _loadThenStep(missing, direction) {
+    this._loading = true;
+    try {
+      if (await loadMissing(this, missing)) this._step(direction);
+    } finally {
+      this._loading = false;
+    }
+  }
+
+  _step(direction) {
+    const words = STEPS[direction];
+    const here = this.store.current;
+    const step = this.history[direction]();
+    if (!step) return this.notices.say(words.nothing());
+    const { label, frame } = step.patch;
+    const said = frame === here ? words.done(label) : words.there(label, this.store.numbers.indexOf(frame) + 1);
+    this.notices.say(step.skipped ? `${said} – ${gettext("except what was changed elsewhere since")}` : said);
+  }
+}

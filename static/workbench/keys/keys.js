@@ -1,0 +1,133 @@
+/**
+ * The one table of keys: the keyboard, the help sheet and the tooltips are made from it. `keys` are chords as
+ * `chord()` of key_press.js writes them. `labels` are texts for translation. An annotator may have chosen other keys.
+ */
+import { gettext } from "../../base/messages.js";
+
+const GROUPS = {
+  person: () => gettext("The selected person"),
+  people: () => gettext("Choosing people"),
+  identity: () => gettext("Who is who"),
+  frame: () => gettext("Frames"),
+  view: () => gettext("Views"),
+  other: () => gettext("Everything else"),
+};
+
+const TABLE = [
+  ["left", "person", ["ArrowLeft"], () => gettext("one position to the left, as the active view shows it")],
+  ["right", "person", ["ArrowRight"], () => gettext("one position to the right")],
+  ["up", "person", ["ArrowUp"], () => gettext("one position upwards: away from the camera")],
+  ["down", "person", ["ArrowDown"], () => gettext("one position downwards: towards the camera")],
+  ["leftFar", "person", ["Shift+ArrowLeft"], () => gettext("ten positions to the left")],
+  ["rightFar", "person", ["Shift+ArrowRight"], () => gettext("ten positions to the right")],
+  ["upFar", "person", ["Shift+ArrowUp"], () => gettext("ten positions upwards")],
+  ["downFar", "person", ["Shift+ArrowDown"], () => gettext("ten positions downwards")],
+  ["moveHere", "person", ["d"], () => gettext("move under the pointer, as a right click does")],
+  ["heads", "person", ["y"], () => gettext("clicks mean the top of the head, for hidden feet; and back")],
+  ["validate", "person", ["e"], () => gettext("validate: the position is right")],
+  ["validateNext", "person", ["Enter"], () => gettext("validate and go to the next yellow person")],
+  ["taller", "person", ["}", "PageUp"], () => gettext("taller, by 2 cm; later frames keep it")],
+  ["shorter", "person", ["{", "PageDown"], () => gettext("shorter, by 2 cm")],
+  ["wider", "person", ["]", "Shift+PageUp"], () => gettext("wider, by 2 cm")],
+  ["narrower", "person", ["[", "Shift+PageDown"], () => gettext("narrower, by 2 cm")],
+  ["usualSize", "person", ["\\"], () => gettext("the usual height and width again")],
+  ["remove", "person", ["Backspace", "Delete"], () => gettext("remove from this frame")],
+  ["nextPerson", "people", ["Tab"], () => gettext("next person")],
+  ["previousPerson", "people", [" ", "Shift+Tab"], () => gettext("previous person")],
+  ["nextCarried", "people", ["f"], () => gettext("next yellow person, still to be looked at")],
+  ["validateAll", "people", ["Shift+Enter"], () => gettext("validate everybody: all yellow people stand right")],
+  ["round", "people", ["a"], () => gettext("one by one, close up: right click places and goes on, Enter: it is right")],
+  ["roundBack", "people", ["b"], () => gettext("the person before, when one by one")],
+  ["rename", "identity", ["r"], () => gettext("give the person another number")],
+  ["split", "identity", ["x"], () => gettext("split: from here on it is somebody else, with a new number")],
+  ["join", "identity", ["Shift+j"], () => gettext("join: another number is the same person")],
+  ["swap", "identity", ["Shift+x"], () => gettext("swap the person with another from here on")],
+  ["removeMore", "identity", ["Shift+Delete", "Shift+Backspace"], () => gettext("remove from several frames")],
+  ["nextWarning", "identity", ["q"], () => gettext("go to the next warning")],
+  ["dismissWarning", "identity", ["Shift+q"], () => gettext("dismiss that warning: it is right as it is")],
+  ["nextFrame", "frame", ["n"], () => gettext("next frame; this one is done")],
+  ["previousFrame", "frame", ["p"], () => gettext("previous frame")],
+  ["bring", "frame", ["l"], () => gettext("load the people of the previous frame who are missing here")],
+  ["bringNext", "frame", ["j"], () => gettext("load the people of the next frame who are missing here")],
+  ["copyPrevious", "frame", ["c"], () => gettext("copy a person exactly from the previous frame")],
+  ["copyNext", "frame", ["Shift+c"], () => gettext("copy a person exactly from the next frame")],
+  ["fill", "frame", ["i"], () => gettext("fill in between the frames in which the person is validated")],
+  ["nextTask", "frame", ["g"], () => gettext("go to what is left to do")],
+  ["play", "frame", ["k"], () => gettext("play the frames, and stop")],
+  ["lookNext", "frame", [">"], () => gettext("look at the next frame, without saying anything about this one")],
+  ["lookPrevious", "frame", ["<"], () => gettext("look at the previous frame")],
+  ["reload", "frame", ["Shift+l"], () => gettext("load this frame from the server again")],
+  ["save", "frame", ["s", "Ctrl+s"], () => gettext("save now (it also happens by itself)")],
+  ["zoom", "view", ["z"], () => gettext("zoom all views to the selected person, and back")],
+  ["largeView", "view", ["v"], () => gettext("the active view large, and back")],
+  ["toggleView", "view", ["1", "2", "3", "4", "5", "6", "7", "8", "9"], () => gettext("hide that view, or show it again")],
+  ["allViews", "view", ["0"], () => gettext("all views, alike")],
+  ["views", "view", ["u"], () => gettext("which views are shown, brightness and contrast of each")],
+  ["outline", "view", ["t"], () => gettext("show the border of the ground area")],
+  ["grid", "view", ["Shift+t"], () => gettext("show a grid of metres on the ground")],
+  ["pathsInViews", "view", ["w"], () => gettext("paths in the views: none, of the selected person, of everybody")],
+  ["pathsOnMap", "view", ["Shift+w"], () => gettext("paths on the map: none, of the selected person, of everybody")],
+  ["filmstrip", "view", ["m"], () => gettext("show the selected person over all frames")],
+  ["directions", "view", ["h"], () => gettext("show where the arrow keys lead")],
+  ["undo", "other", ["Ctrl+z"], () => gettext("undo")],
+  ["redo", "other", ["Ctrl+y", "Ctrl+Shift+z"], () => gettext("redo")],
+  ["history", "frame", ["Shift+h"], () => gettext("who saved this frame and when; look at it and restore it")],
+  ["help", "other", ["?", "F1"], () => gettext("this sheet")],
+  ["settings", "other", [","], () => gettext("settings")],
+  ["controls", "other", ["F6"], () => gettext("let Tab move between the buttons; Escape returns to annotating")],
+  ["escape", "other", ["Escape"], () => gettext("leave zoom, then let go of the person")],
+];
+
+/** Who counts on finding them: the way out, and digits that mean views. */
+const FIXED = ["toggleView", "controls", "escape"];
+
+let chosen = {};
+
+/** @param {Record<string, string[]>} keys chords by id; whatever is not in it has the keys of the table */
+export function useKeys(keys) {
+  const reserved = TABLE.filter(([id]) => FIXED.includes(id)).flatMap(([, , own]) => own);
+  const fits = ([id, own]) => !FIXED.includes(id) && Array.isArray(own) && own.length && own.every((key) => typeof key === "string" && !reserved.includes(key));
+  chosen = Object.fromEntries(Object.entries(keys).filter(fits));
+}
+
+/** @returns {{id, group, keys: string[], label: string, fixed: boolean}[]} in the order of the help sheet */
+export function keyTable() {
+  const taken = new Set(Object.values(chosen).flat());
+  return TABLE.map(([id, group, keys, label]) => ({
+    id,
+    group,
+    keys: chosen[id] ?? keys.filter((key) => !taken.has(key)),
+    label: label(),
+    fixed: FIXED.includes(id),
+  }));
+}
+
+/** Who has that key already, other than `id`: a row of the table, or null. */
+export function clash(id, key) {
+  return keyTable().find((row) => row.id !== id && row.keys.includes(key)) ?? null;
+}
+
+/** What to press for `id`, as it is printed on keys. */
+export function keyFor(id) {
+  const [key] = keyTable().find((row) => row.id === id).keys;
+  return key ? keyName(key) : gettext("no key");
+}
+
+/** Tooltip of a button that does the same as `id`: what it does, and the key. */
+export function titleFor(id) {
+  const { keys, label } = keyTable().find((row) => row.id === id);
+  return keys.length ? `${label} (${keyName(keys[0])})` : label;
+}
+
+export function groupTitle(group) {
+  return GROUPS[group]();
+}
+
+/** A chord as it is printed on keys. */
+export function keyName(text) {
+  const names = { ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓", " ": gettext("Space"), Escape: "Esc" };
+  return text
+    .split("+")
+    .map((part) => names[part] ?? (part.length === 1 ? part.toUpperCase() : part))
+    .join(" + ");
+}

@@ -1,0 +1,94 @@
+import { carriedOf } from "../../truth/annotation.js";
+import { fetched } from "../../base/lazy.js";
+import { keyFor } from "../keys/keys.js";
+import { gettext } from "../../base/messages.js";
+
+/**
+ * Going round the yellow people one by one, close up: Enter for who stands right, one right click on the feet for
+ * who does not, and the views show the next one. After the last one they show everything again, for people
+ * without a box; whoever is placed then is shown close up, too.
+ */
+export class Round {
+  /** @param {{people: import("./people_actions.js").PeopleActions, escape: () => void}} parts what is done when not one by one */
+  constructor({ scene, store, images, panes, notices, walk, tour, dragging, heads, intents, people, escape }) {
+    Object.assign(this, { _store: store, _panes: panes, _notices: notices, _walk: walk, _tour: tour });
+    Object.assign(this, { _dragging: dragging, _heads: heads, _people: people, _escape: escape });
+    this._passed = []; // people gone past in this frame, newest last
+    store.on("frame", () => (this._passed = []));
+    store.on("selection", ({ after }) => this.on && after !== null && !panes.zoomed && panes.zoom(true));
+    intents.on("moved", () => this.on && this._advance());
+    const make = ({ WhoIs }) => new WhoIs({ scene, store, images, panes });
+    this._showWho = fetched(notices, import.meta.resolve("./whois.js"), make);
+  }
+
+  get on() {
+    return this._panes.closeUp;
+  }
+
+  /** Rows for the table of actions; those that exist already go on to the next person, too. */
+  table() {
+    const people = this._people;
+    return {
+      round: () => (this.on ? this._leave() : this._enter()),
+      roundBack: () => this._back(),
+      validateNext: () => people.validate() && (this.on ? this._advance() : people.selectCarried()),
+      validateAll: () => people.validateAll() && this.on && this._advance(),
+      remove: () => people.remove() && this.on && this._advance(),
+      nextFrame: () => this._nextFrame(),
+      escape: () => (this.on && !this._dragging.active && !this._heads.active ? this._leave() : this._escape()),
+    };
+  }
+
+  _enter() {
+    this._panes.closeUp = true;
+    this._showWho();
+    if (this._store.selection === null) this._selectNext();
+    this._panes.zoom(true);
+    if (this._store.selection === null) this._sayAllSeen();
+  }
+
+  _leave() {
+    this._panes.closeUp = false;
+    this._panes.zoom(false);
+  }
+
+  _advance() {
+    if (this._store.selection !== null) this._passed.push(this._store.selection);
+    if (!this._selectNext()) this._showEverything();
+  }
+
+  /** @returns {boolean} whether somebody is yellow */
+  _selectNext() {
+    const next = this._tour.next(this._store.selection ?? this._passed.at(-1) ?? null);
+    if (next) this._store.select(next.person);
+    return next !== undefined;
+  }
+
+  _showEverything() {
+    this._store.select(null);
+    this._panes.zoom(false);
+    this._sayAllSeen();
+  }
+
+  _sayAllSeen() {
+    this._notices.say(gettext("Nobody is yellow. Has somebody no box? Click their feet. {on} goes on, {back} goes back", { on: keyFor("nextFrame"), back: keyFor("roundBack") }));
+  }
+
+  /** The one before, validated as they are: for a click that was not good enough. */
+  _back() {
+    let person = this._passed.pop();
+    while (person !== undefined && !this._store.person(person)) person = this._passed.pop();
+    if (person === undefined) return this._notices.say(gettext("Nobody of this frame was looked at before"));
+    this._store.select(person);
+    this._panes.zoom(true);
+  }
+
+  async _nextFrame() {
+    const before = this._store.current;
+    await this._walk.next();
+    if (!this.on || this._store.current === before) return;
+    if (!carriedOf(this._store.people()).length) return this._showEverything();
+    this._store.select(null); // from the first one on, whoever was looked at last
+    this._selectNext();
+  }
+}

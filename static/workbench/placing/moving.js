@@ -1,0 +1,116 @@
+import { changed } from "../../truth/annotation.js";
+import { freePosition } from "../../truth/propagation.js";
+import * as commands from "../../truth/commands.js";
+import { keyFor } from "../keys/keys.js";
+import { gettext } from "../../base/messages.js";
+import { spotOn } from "../../truth/ground_point.js";
+
+const FAR = 10; // positions a step with Shift goes
+
+/** Placing people and moving them, by click and by arrow key. */
+export class Moving {
+  constructor({ scene, store, history, guard, ghost, sightings, heads, arrows, held }) {
+    Object.assign(this, { scene, store, history, guard, ghost, sightings, heads });
+    Object.assign(this, { _arrows: arrows, _held: held });
+  }
+
+  /** Rows for the table of actions. */
+  table() {
+    return Object.fromEntries(
+      ["left", "right", "up", "down"].flatMap((name) => [
+        [name, (event) => this.step(name, event)],
+        [`${name}Far`, (event) => this.step(name, event, FAR)],
+      ]),
+    );
+  }
+
+  /** @returns {boolean} whether somebody new stands there now */
+  place(pane, at, event) {
+    const position = this.guard.refused(event) ? null : this._positionUnder(pane, at, event, null);
+    if (position === null) return false;
+    const occupant = this.store.occupant(position);
+    if (occupant) {
+      this.guard.say(event, gettext("Person {person} stands exactly here", { person: occupant.person }));
+      return false;
+    }
+    this.ghost.hide();
+    this.history.run(commands.place(this.store, { position }));
+    this.sightings.begin(pane, this.heads.pixel(pane, at, null));
+    return true;
+  }
+
+  /** @returns {boolean} whether the selected person stands there now */
+  moveHere(pane, at, event) {
+    const person = this.guard.selected(event);
+    const position = person && this._positionUnder(pane, at, event, person);
+    if (!person || position === null || !this.moveTo(person, position, event)) return false;
+    this.ghost.hide();
+    this.sightings.begin(pane, this.heads.pixel(pane, at, person));
+    return true;
+  }
+
+  /** The feet of the selected person once more, in another view. */
+  sight(pane, at, event) {
+    if (this.guard.refused(event)) return;
+    const refusal = this.heads.refusal(pane);
+    if (refusal) return this.guard.say(event, refusal);
+    if (pane.view.index === null) return this.guard.say(event, gettext("The map sees from nowhere: click the feet in a camera's view"));
+    const person = this.store.selected();
+    if (!person) return this.place(pane, at, event);
+    const pixel = this.heads.pixel(pane, at, person);
+    if (this.sightings.add(pane, pixel, event, (position) => this.moveTo(person, position, event))) return;
+    if (this.moveHere(pane, at, event)) this.guard.say(event, gettext("Now Alt + click on the same feet in another view"));
+  }
+
+  step(name, event, far = null) {
+    const person = this.guard.selected();
+    if (!person) return;
+    const step = this._held.press(name, event, () => this._arrows.steps(person))[name];
+    const beside = () => this.guard.besideFoot(person);
+    for (let cells = far ?? this._held.pace; cells > 0; cells = far ? 0 : cells - 1) {
+      const position = this._steppedFree(person, step, cells);
+      if (position !== null) return this.moveTo(person, position, beside);
+    }
+    this.guard.say(beside, gettext("The ground area ends here"));
+  }
+
+  /** @returns {boolean} whether the person stands there now */
+  moveTo(person, position, place) {
+    const occupant = this.store.occupant(position, person.person);
+    if (occupant) {
+      this.guard.say(place, gettext("Person {person} stands there already", { person: occupant.person }));
+      return false;
+    }
+    if (position !== person.position || person.state !== "validated") {
+      this.history.run(commands.move(this.store, person.person, position));
+    }
+    return true;
+  }
+
+  /** So many positions further, and past whoever stands exactly there: a press is never lost on a neighbour. */
+  _steppedFree(person, { columns, rows }, cells) {
+    for (let far = cells; ; far += 1) {
+      const position = this.scene.stepped(person.position, columns * far, rows * far);
+      if (position === null || !this.store.occupant(position, person.person)) return position;
+    }
+  }
+
+  _positionUnder(pane, at, event, person) {
+    const refusal = this.heads.refusal(pane);
+    if (refusal) this.guard.say(event, refusal);
+    if (refusal) return null;
+    const { position, problem } = spotOn(this.scene, this.store, this.heads.ground(pane, at, person));
+    if (problem === "horizon" && pane.view.byTable) this.guard.say(event, gettext("Nobody in the ground area would have their feet here"));
+    else if (problem === "horizon" && this.heads.active) this.guard.say(event, gettext("No head can be here: the line of sight never comes down to it"));
+    else if (problem === "horizon") this.guard.say(event, gettext("Above the horizon there is no ground: click where the feet are"));
+    if (problem === "outside") this.guard.say(event, gettext("Outside the ground area – {key} shows its border", { key: keyFor("outline") }));
+    return position;
+  }
+}
+
+/** Where a person lands who is dragged to a ground point: on the grid, on no one's toes. */
+export function landing(scene, store, person, ground) {
+  const taken = new Set([...store.people().values()].filter((one) => one !== person).map(({ position }) => position));
+  const position = freePosition(scene.grid, ground, taken);
+  return position === person.position ? person : changed(person, { position });
+}

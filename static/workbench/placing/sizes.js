@@ -1,0 +1,117 @@
+import { changed } from "../../truth/annotation.js";
+import { patch } from "../../truth/commands.js";
+import { failureWords } from "../../base/failure_words.js";
+import { gettext } from "../../base/messages.js";
+
+const STEP = { height: 0.02, radius: 0.01 }; // metres
+
+/** Height and width of people. Who gets a size of their own keeps it in all later frames. */
+export class Sizes {
+  constructor({ scene, store, history, guard, loader, notices }) {
+    Object.assign(this, { scene, store, history, guard, loader, notices });
+    this._loading = false;
+  }
+
+  /** Rows for the table of actions. */
+  table() {
+    return {
+      taller: () => this.step("height", 1),
+      shorter: () => this.step("height", -1),
+      wider: () => this.step("radius", 1),
+      narrower: () => this.step("radius", -1),
+      usualSize: () => this.reset(),
+    };
+  }
+
+  step(name, direction) {
+    const person = this.guard.selected();
+    if (!person) return;
+    const now = this.scene.cylinderOf(person)[name];
+    const next = allowed(this.scene, name, (Math.round(now / STEP[name]) + direction) * STEP[name]);
+    if ((next - now) * direction > 0) this.set(person, { [name]: next });
+    else this.guard.say(this.guard.besideFoot(person), limitWords(this.scene, name));
+  }
+
+  reset() {
+    const person = this.guard.selected();
+    if (person) this.set(person, { height: null, radius: null });
+  }
+
+  /** @param {{height?: number|null, radius?: number|null}} values metres; null: the dataset's cylinder */
+  async set(person, values) {
+    if (Object.values(values).some((value) => value !== null) && this.refused()) return;
+    if (!(await this._laterFramesLoaded())) return;
+    const current = this.store.person(person.person);
+    if (!current) return;
+    this.history.run(resize(this.store, person.person, this._withDefaults(values)));
+    const { height, radius } = this.scene.cylinderOf(this.store.person(person.person));
+    const words = { person: person.person, height: height.toFixed(2), width: (2 * radius).toFixed(2) };
+    this.guard.say(this.guard.besideFoot(current), gettext("Person {person}: {height} m tall, {width} m wide", words));
+  }
+
+  /** Tables hold the usual size only: where a view has nothing else, nobody gets a size of their own, and that is said. */
+  refused(place = null) {
+    const unknown = this.scene.cameras.filter(({ byTable }) => byTable).map(({ name }) => name);
+    if (!unknown.length) return false;
+    this.guard.say(place, gettext("Everybody keeps the usual size here: this page does not know the lens of {views}", { views: unknown.join(", ") }));
+    return true;
+  }
+
+  /** The usual size is no size of one's own. */
+  _withDefaults(values) {
+    return Object.fromEntries(
+      Object.entries(values).map(([name, value]) => [name, Math.abs(value - this.scene.cylinder[name]) < 1e-6 ? null : value]),
+    );
+  }
+
+  /** Long layers are loaded in pieces; the later frames have to be there to be changed. */
+  async _laterFramesLoaded() {
+    const { store } = this;
+    const missing = () => store.numbers.slice(store.numbers.indexOf(store.current)).find((number) => !store.frame(number).loaded);
+    if (missing() === undefined) return true;
+    if (this._loading) return false;
+    this._loading = true;
+    this.notices.say(gettext("Loading the later frames: the person keeps this size in them"));
+    try {
+      for (let number = missing(); number !== undefined; number = missing()) await this.loader.load(number, false);
+      return true;
+    } catch (error) {
+      this.notices.say(gettext("The later frames did not arrive: {error}", { error: failureWords(error) }));
+      return false;
+    } finally {
+      this._loading = false;
+    }
+  }
+}
+
+/** A size from this frame on, wherever the person occurs: one step to undo. */
+export function resize(store, person, values) {
+  const later = store.numbers.slice(store.numbers.indexOf(store.current));
+  const edits = later
+    .filter((number) => store.person(person, number))
+    .map((number) => ({ frame: number, person, after: changed(store.person(person, number), values) }));
+  return patch(store, gettext("change the size of person {person}", { person }), edits, { select: person, group: `size ${store.current} ${person}` });
+}
+
+/** The height (metres, whole centimetres) whose rectangle in a view ends at `top` (image pixels). */
+export function heightReaching(scene, view, person, top) {
+  let [low, high] = scene.sizes.height;
+  while (high - low > 0.005) {
+    const middle = (low + high) / 2;
+    const box = view.box(changed(person, { height: middle }));
+    if (!box || box.ymin < top) high = middle; // too tall to be seen counts as too tall
+    else low = middle;
+  }
+  return allowed(scene, "height", Math.round(low * 100) / 100);
+}
+
+function limitWords(scene, name) {
+  const [least, most] = scene.sizes[name].map((metres) => (name === "radius" ? 2 * metres : metres).toFixed(2));
+  if (name === "radius") return gettext("People are {least} to {most} m wide", { least, most });
+  return gettext("People are {least} to {most} m tall", { least, most });
+}
+
+function allowed(scene, name, metres) {
+  const [least, most] = scene.sizes[name];
+  return Number(Math.min(Math.max(metres, least), most).toFixed(3));
+}

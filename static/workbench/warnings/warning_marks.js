@@ -1,0 +1,59 @@
+import { HALO, INK, YELLOW } from "../../views/styles.js";
+import { drawPath } from "../../views/marks.js";
+
+const SIDE = 13; // CSS pixels of the sign
+const BELOW = 7; // under the feet, where no box is
+
+/** Items for `Panes.addExtra`: a sign at everybody a warning is about, and on the map where they came from. */
+export function warningItems(warnings, panes, pane) {
+  return warnings.of(panes.store.current).flatMap((warning) =>
+    warning.at
+      .map((ground) => onPane(pane, ground))
+      .filter(Boolean)
+      .map((place, index) => item(warning, place, index, comesFrom(pane, warning))),
+  );
+}
+
+function item(warning, place, index, from) {
+  const points = from ? [from, place] : [place];
+  const [xs, ys] = [points.map(({ x }) => x), points.map(({ y }) => y)];
+  return {
+    id: `warning ${warning.key} ${index}`,
+    what: warning,
+    look: "warning",
+    bounds: { xmin: Math.min(...xs) - SIDE, ymin: Math.min(...ys) - 4, xmax: Math.max(...xs) + SIDE, ymax: Math.max(...ys) + BELOW + SIDE + 4 },
+    draw: (ctx) => {
+      if (from) drawPath(ctx, points, { colour: YELLOW, dash: [2, 4] });
+      drawSign(ctx, place.x, place.y + BELOW);
+    },
+  };
+}
+
+/** In a view the line would cross half the picture. */
+function comesFrom(pane, { from }) {
+  return from && pane.view.index === null ? onPane(pane, from) : null;
+}
+
+function onPane(pane, ground) {
+  const point = pane.view.point(ground);
+  return point && pane.transform.toPane(point.x, point.y);
+}
+
+function drawSign(ctx, x, top) {
+  ctx.setLineDash([]);
+  ctx.beginPath();
+  ctx.moveTo(x, top);
+  ctx.lineTo(x + SIDE / 2 + 1, top + SIDE);
+  ctx.lineTo(x - SIDE / 2 - 1, top + SIDE);
+  ctx.closePath();
+  ctx.lineWidth = 2.5;
+  ctx.strokeStyle = HALO;
+  ctx.stroke();
+  ctx.fillStyle = YELLOW;
+  ctx.fill();
+  ctx.fillStyle = INK;
+  ctx.font = "700 10px system-ui, 'DejaVu Sans', sans-serif";
+  ctx.textAlign = "center";
+  ctx.textBaseline = "alphabetic";
+  ctx.fillText("!", x, top + SIDE - 2);
+}
