@@ -5,11 +5,13 @@ PYTHON ?= python3
 BIN := .venv/bin
 ENVIRONMENT := .venv/.runtime
 DEV_ENVIRONMENT := .venv/.development
+NODE_ENVIRONMENT := node_modules/.development
+NODE := node_modules/.bin
 # Commands that only look at the code need settings, but no secrets and no data.
 CHECK := SECRET_KEY=checks-only-0123456789-0123456789-0123456789 DATA_DIR=$(CURDIR)/var/check
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-fast lint format types migrations-check static-check check benchmarks clean
+.PHONY: help run test test-fast test-js lint format types migrations-check static-check check benchmarks clean
 
 help: ## list what make can do
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 26
@@ -19,21 +21,29 @@ run: $(ENVIRONMENT) ## start everything on this machine: demo scene, web server,
 
 test: $(DEV_ENVIRONMENT) ## run all tests; installs the Debian packages they need (chromium, postgresql, redis-server, nginx)
 	@scripts/install-debian-packages chromium postgresql redis-server nginx fonts-dejavu-core
+	$(MAKE) test-js
 	$(BIN)/pytest -n 2 --dist loadgroup
 
-test-fast: $(DEV_ENVIRONMENT) ## the tests that need neither a browser nor services
+test-fast: test-js $(DEV_ENVIRONMENT) ## the tests that need neither a browser nor services
 	$(BIN)/pytest -n 2 -m "not browser and not services"
 
-lint: $(DEV_ENVIRONMENT) ## ruff: rules and format
+test-js: $(NODE_ENVIRONMENT) ## the browser's modules that need no browser
+	node --test tests/js/*.test.js
+
+lint: $(DEV_ENVIRONMENT) $(NODE_ENVIRONMENT) ## ruff and biome: rules and format
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(NODE)/biome check
 
-format: $(DEV_ENVIRONMENT) ## let ruff repair and format
+format: $(DEV_ENVIRONMENT) $(NODE_ENVIRONMENT) ## let ruff and biome repair and format
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+	$(NODE)/biome check --write
 
-types: $(DEV_ENVIRONMENT) ## mypy
+types: $(DEV_ENVIRONMENT) $(NODE_ENVIRONMENT) ## mypy, and tsc over the browser's half
 	$(BIN)/mypy annotator gtm_hit
+	$(NODE)/tsc -p tsconfig.json
+	$(NODE)/tsc -p tsconfig.pure.json
 
 migrations-check: $(DEV_ENVIRONMENT) ## models and migrations tell the same story
 	$(CHECK) $(BIN)/python manage.py makemigrations --check --dry-run
@@ -46,8 +56,8 @@ check: lint types migrations-check static-check ## everything .ci/run does befor
 benchmarks: $(DEV_ENVIRONMENT) ## print the figures of the README's performance table
 	@for file in benchmarks/[a-z]*.py; do echo "== $$file"; $(BIN)/python -m benchmarks.$$(basename $$file .py) || exit 1; done
 
-clean: ## remove the environment and caches; data in var/ stay
-	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis
+clean: ## remove the environments and caches; data in var/ stay
+	rm -rf .venv node_modules .mypy_cache .ruff_cache .pytest_cache .hypothesis
 
 $(ENVIRONMENT): requirements.txt
 	@scripts/make-environment $(PYTHON) requirements.txt
@@ -57,3 +67,8 @@ $(DEV_ENVIRONMENT): requirements.txt requirements-dev.txt requirements-alone.txt
 	@scripts/make-environment $(PYTHON) requirements-dev.txt
 	@$(BIN)/pip install --quiet --disable-pip-version-check --no-deps -r requirements-alone.txt
 	@touch $(ENVIRONMENT) $@
+
+$(NODE_ENVIRONMENT): package.json package-lock.json
+	@command -v npm >/dev/null && command -v node >/dev/null || scripts/install-debian-packages nodejs npm
+	@npm ci --silent --no-progress
+	@touch $@
