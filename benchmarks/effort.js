@@ -3,15 +3,15 @@
  * at the real page, and every key press and every click is counted. Clicks miss by a normal error.
  */
 import { Activity } from "/static/saving/activity.js";
-import { History } from "/static/truth/history.js";
-import { Images } from "/static/views/images.js";
 import { Journal } from "/static/saving/journal.js";
-import { withRefill } from "/static/truth/keyframes.js";
 import { Loader } from "/static/saving/loader.js";
-import { Pane } from "/static/views/pane.js";
 import { Saver } from "/static/saving/saver.js";
+import { History } from "/static/truth/history.js";
+import { withRefill } from "/static/truth/keyframes.js";
 import { Scene } from "/static/truth/scene.js";
 import { Store } from "/static/truth/store.js";
+import { Images } from "/static/views/images.js";
+import { Pane } from "/static/views/pane.js";
 import { Tour } from "/static/workbench/people/queue.js";
 import { buildWorkbench } from "/static/workbench/workbench.js";
 
@@ -40,9 +40,18 @@ export async function work({ scene: json, truth, plan, seed }) {
 }
 
 function makeSession(scene, journal) {
-  const empty = scene.frames.map(({ number }) => ({ number, revision: 0, annotations: [], done: false, nobody: false }));
+  const empty = scene.frames.map(({ number }) => ({
+    number,
+    revision: 0,
+    annotations: [],
+    done: false,
+    nobody: false,
+  }));
   const api = { frames: async () => ({ frames: empty }), blob: () => Promise.reject(new Error("no pictures here")) };
-  const store = new Store(scene.frames.map(({ number }) => number), scene.nextPerson);
+  const store = new Store(
+    scene.frames.map(({ number }) => number),
+    scene.nextPerson,
+  );
   const loader = new Loader({ api, scene, store });
   const activity = new Activity();
   const saver = new Saver({ api, store, journal, activity, practice: true });
@@ -55,7 +64,12 @@ class Annotator {
   constructor({ scene, store }, truth, plan, seed) {
     Object.assign(this, { scene, store, plan });
     this._tour = new Tour({ scene, store });
-    this._truth = new Map(truth.map((people, index) => [store.numbers[index], new Map(Object.entries(people).map(([id, position]) => [Number(id), position]))]));
+    this._truth = new Map(
+      truth.map((people, index) => [
+        store.numbers[index],
+        new Map(Object.entries(people).map(([id, position]) => [Number(id), position])),
+      ]),
+    );
     this._number = new Map(); // of the truth's people, in the workbench
     this._who = new Map(); // and back
     this._random = normal(seed);
@@ -96,7 +110,10 @@ class Annotator {
   async _go(number, how) {
     how();
     for (let wait = 0; this.store.current !== number; wait += 1) {
-      if (wait > 200) throw new Error(`still in ${this.store.current}, not in ${number}: ${document.querySelector("dialog")?.textContent}`);
+      if (wait > 200)
+        throw new Error(
+          `still in ${this.store.current}, not in ${number}: ${document.querySelector("dialog")?.textContent}`,
+        );
       await tick();
     }
     await tick();
@@ -107,7 +124,11 @@ class Annotator {
   /** Carried over as the original does it: everybody exactly where he was. */
   _standStill() {
     const before = this.store.people(this.store.neighbour(-1));
-    const edits = [...this.store.people().values()].map((one) => ({ frame: this.store.current, person: one.person, after: Object.freeze({ ...one, position: before.get(one.person).position }) }));
+    const edits = [...this.store.people().values()].map((one) => ({
+      frame: this.store.current,
+      person: one.person,
+      after: Object.freeze({ ...one, position: before.get(one.person).position }),
+    }));
     this.store.apply(edits);
   }
 
@@ -164,7 +185,9 @@ class Annotator {
 
   /** @returns {boolean} whether there is anything left to do in this frame */
   _goOn(one) {
-    const wrong = this._yellow().filter(({ person }) => person !== one.person && !(this._here(person) && this._isNear(person)));
+    const wrong = this._yellow().filter(
+      ({ person }) => person !== one.person && !(this._here(person) && this._isNear(person)),
+    );
     const right = this._yellow().length - wrong.length;
     if (!right && !wrong.length && !this._missing().length) return false;
     const next = this._tour.next(one.person);
@@ -193,7 +216,9 @@ class Annotator {
   // What there is to see
 
   _yellow() {
-    return [...this.store.people().values()].filter(({ state }) => state === "carried").sort((one, other) => one.person - other.person);
+    return [...this.store.people().values()]
+      .filter(({ state }) => state === "carried")
+      .sort((one, other) => one.person - other.person);
   }
 
   _missing(number = this.store.current) {
@@ -203,7 +228,9 @@ class Annotator {
 
   /** Missing here, but known from a later keyframe. */
   _cameLater() {
-    const after = this.store.numbers.slice(this.store.numbers.indexOf(this.store.current) + 1).find((number) => this.store.people(number).size);
+    const after = this.store.numbers
+      .slice(this.store.numbers.indexOf(this.store.current) + 1)
+      .find((number) => this.store.people(number).size);
     const later = after === undefined ? new Map() : this.store.people(after);
     return this.store.people().size ? this._missing().filter((id) => later.has(this._number.get(id))) : [];
   }
@@ -213,14 +240,22 @@ class Annotator {
   }
 
   _isNear(person, number = this.store.current) {
-    const [one, other] = [this.store.person(person, number).position, this._here(person, number)].map((position) => this.scene.metres(position));
+    const [one, other] = [this.store.person(person, number).position, this._here(person, number)].map((position) =>
+      this.scene.metres(position),
+    );
     return Math.hypot(one.x - other.x, one.y - other.y) <= NEAR + 1e-9;
   }
 
   _wrongIn(number) {
     const people = [...this.store.people(number).values()];
-    const wrong = people.filter((one) => this._here(one.person, number) === undefined || one.state !== "validated" || !this._isNear(one.person, number));
-    return [...wrong.map(({ person }) => `${number}: person ${person}`), ...this._missing(number).map((id) => `${number}: ${id} is missing`)];
+    const wrong = people.filter(
+      (one) =>
+        this._here(one.person, number) === undefined || one.state !== "validated" || !this._isNear(one.person, number),
+    );
+    return [
+      ...wrong.map(({ person }) => `${number}: person ${person}`),
+      ...this._missing(number).map((id) => `${number}: ${id} is missing`),
+    ];
   }
 
   // Hands
@@ -248,7 +283,14 @@ class Annotator {
     while (this.store.people().size === before) {
       this._count("clicks");
       const { pane, sigma } = this._bestView(position) ?? { pane: panes.get("map"), sigma: SCREEN };
-      const init = { ...this._aim(pane, position, sigma), button: 0, pointerId: 1, shiftKey: true, bubbles: true, cancelable: true };
+      const init = {
+        ...this._aim(pane, position, sigma),
+        button: 0,
+        pointerId: 1,
+        shiftKey: true,
+        bubbles: true,
+        cancelable: true,
+      };
       pane.element.dispatchEvent(new PointerEvent("pointerdown", init));
       pane.element.dispatchEvent(new PointerEvent("pointerup", init));
       this._pointAt(panes.get("map"));
@@ -259,19 +301,37 @@ class Annotator {
 
   _rightClick({ pane, sigma }, position) {
     this._count("clicks");
-    pane.element.dispatchEvent(new MouseEvent("contextmenu", { ...this._aim(pane, position, sigma), button: 2, bubbles: true, cancelable: true }));
+    pane.element.dispatchEvent(
+      new MouseEvent("contextmenu", {
+        ...this._aim(pane, position, sigma),
+        button: 2,
+        bubbles: true,
+        cancelable: true,
+      }),
+    );
   }
 
   _clickRow(person) {
     this._count("clicks");
     for (const paint of this._paints.splice(0)) paint(performance.now());
-    [...document.querySelectorAll(".people li")].find((row) => row.querySelector(".number").textContent === String(person)).click();
+    [...document.querySelectorAll(".people li")]
+      .find((row) => row.querySelector(".number").textContent === String(person))
+      .click();
   }
 
   _clickTimeline(number) {
     this._count("clicks");
-    const { left, top, width, height } = document.querySelector(`.timeline-frame[data-number="${number}"]`).getBoundingClientRect();
-    const init = { clientX: left + width / 2, clientY: top + height / 2, button: 0, pointerId: 1, bubbles: true, cancelable: true };
+    const { left, top, width, height } = document
+      .querySelector(`.timeline-frame[data-number="${number}"]`)
+      .getBoundingClientRect();
+    const init = {
+      clientX: left + width / 2,
+      clientY: top + height / 2,
+      button: 0,
+      pointerId: 1,
+      bubbles: true,
+      cancelable: true,
+    };
     const frames = document.querySelector(".timeline-frames");
     for (const type of ["pointerdown", "pointerup"]) frames.dispatchEvent(new PointerEvent(type, init));
   }
@@ -303,7 +363,10 @@ class Annotator {
     if (!seen || seen.x < 0 || seen.y < 0 || seen.x >= width || seen.y >= height) return null;
     const at = pane.transform.toPane(seen.x, seen.y);
     if (at.x < 2 || at.y < 2 || at.x > pane.room.width - 2 || at.y > pane.room.height - 2) return null;
-    const [right, up] = [onPane(pane, { x: ground.x + 0.01, y: ground.y }), onPane(pane, { x: ground.x, y: ground.y + 0.01 })];
+    const [right, up] = [
+      onPane(pane, { x: ground.x + 0.01, y: ground.y }),
+      onPane(pane, { x: ground.x, y: ground.y + 0.01 }),
+    ];
     const [a, b, c, d] = [right.x - at.x, up.x - at.x, right.y - at.y, up.y - at.y].map((pixels) => pixels / 0.01);
     const sigma = Math.hypot(SCREEN, (this.plan.imagePixels ?? IMAGE) * pane.transform.scale);
     return { sigma, variance: (sigma ** 2 * (a * a + b * b + c * c + d * d)) / (a * d - b * c) ** 2 };
@@ -319,7 +382,10 @@ class Annotator {
     const { columns, rows } = this.scene.grid;
     const [x0, y0] = [from % columns, Math.floor(from / columns)];
     const [dx, dy] = [(to % columns) - x0, Math.floor(to / columns) - y0];
-    const inside = { x: (cells) => x0 + cells >= 0 && x0 + cells < columns, y: (cells) => y0 + cells >= 0 && y0 + cells < rows };
+    const inside = {
+      x: (cells) => x0 + cells >= 0 && x0 + cells < columns,
+      y: (cells) => y0 + cells >= 0 && y0 + cells < rows,
+    };
     const reach = Math.floor(NEAR / this.scene.grid.step + 1e-9);
     let best = { cost: Infinity };
     for (let i = -reach; i <= reach; i += 1) {
@@ -333,8 +399,14 @@ class Annotator {
     const { sign, far } = best[along];
     const axes = panes.get("map").view.axes();
     const wanted = along === "x" ? { columns: sign, rows: 0 } : { columns: 0, rows: sign };
-    const name = Object.keys(axes).find((one) => axes[one].columns === wanted.columns && axes[one].rows === wanted.rows);
-    return { cost: best.cost, far, key: { left: "ArrowLeft", right: "ArrowRight", up: "ArrowUp", down: "ArrowDown" }[name] };
+    const name = Object.keys(axes).find(
+      (one) => axes[one].columns === wanted.columns && axes[one].rows === wanted.rows,
+    );
+    return {
+      cost: best.cost,
+      far,
+      key: { left: "ArrowLeft", right: "ArrowRight", up: "ArrowUp", down: "ArrowDown" }[name],
+    };
   }
 }
 
@@ -342,7 +414,11 @@ class Annotator {
 function presses(cells, mayFar, inside) {
   const far = Math.trunc(cells / FAR);
   const coarse = mayFar ? [0, far, far + Math.sign(cells)].filter((steps) => inside(FAR * steps)) : [0];
-  const options = coarse.map((steps) => ({ steps, rest: cells - FAR * steps, cost: Math.abs(steps) + Math.abs(cells - FAR * steps) }));
+  const options = coarse.map((steps) => ({
+    steps,
+    rest: cells - FAR * steps,
+    cost: Math.abs(steps) + Math.abs(cells - FAR * steps),
+  }));
   const best = options.reduce((one, other) => (other.cost < one.cost ? other : one));
   return { cost: best.cost, far: best.steps !== 0, sign: Math.sign(best.steps || best.rest) };
 }

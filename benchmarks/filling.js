@@ -16,7 +16,10 @@ export function measure({ scene: json, truth, step }) {
 
 function one(scene, truth, first, step) {
   const last = first + step * Math.floor((truth.length - 1 - first) / step);
-  const store = new Store(scene.frames.map(({ number }) => number), 1);
+  const store = new Store(
+    scene.frames.map(({ number }) => number),
+    1,
+  );
   truth.forEach((people, index) => {
     const isKey = index >= first && index <= last && (index - first) % step === 0;
     store.install(store.numbers[index], { people: isKey ? annotated(people) : new Map() }, "server");
@@ -24,7 +27,12 @@ function one(scene, truth, first, step) {
   const keys = store.numbers.filter((number) => store.people(number).size);
   const between = truth.slice(first, last).filter((_, index) => index % step !== 0);
   const persons = new Set(keys.flatMap((number) => [...store.people(number).keys()]));
-  const counts = { filled: 0, near: 0, between: sizes(between), keyed: sizes(truth.slice(first, last + 1)) - sizes(between) };
+  const counts = {
+    filled: 0,
+    near: 0,
+    between: sizes(between),
+    keyed: sizes(truth.slice(first, last + 1)) - sizes(between),
+  };
   for (const person of persons) {
     for (const { frame, after } of filledBeside(store, scene, person, step)) {
       const there = truth[store.numbers.indexOf(frame)][person];
@@ -48,7 +56,12 @@ function filledBeside(store, scene, person, step) {
 }
 
 function annotated(people) {
-  return new Map(Object.entries(people).map(([person, position]) => [Number(person), annotation({ person: Number(person), position })]));
+  return new Map(
+    Object.entries(people).map(([person, position]) => [
+      Number(person),
+      annotation({ person: Number(person), position }),
+    ]),
+  );
 }
 
 function sizes(people) {

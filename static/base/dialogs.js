@@ -10,7 +10,14 @@ export function ask({ title, body, buttons, wide = false }) {
     const row = buttons.map(({ id, label, main, disabled }) =>
       element(
         "button",
-        { type: "button", className: main ? "main" : "", autofocus: Boolean(main), disabled, "data-answer": id, onclick: () => dialog.close(id) },
+        {
+          type: "button",
+          className: main ? "main" : "",
+          autofocus: Boolean(main),
+          disabled,
+          "data-answer": id,
+          onclick: () => dialog.close(id),
+        },
         label,
       ),
     );

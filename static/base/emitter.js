@@ -9,7 +9,10 @@ export class Emitter {
     const listeners = this._listeners.get(name) ?? [];
     this._listeners.set(name, [...listeners, listener]);
     return () => {
-      this._listeners.set(name, (this._listeners.get(name) ?? []).filter((other) => other !== listener));
+      this._listeners.set(
+        name,
+        (this._listeners.get(name) ?? []).filter((other) => other !== listener),
+      );
     };
   }
 

@@ -18,7 +18,8 @@ const LETTER = /^\p{Letter}$/u;
 const ASCII = /^[ -~]$/;
 const LATIN = /^\p{Script=Latin}$/u;
 /** Letters, vowel signs and digits, not Latin ones; µ and the like belong to no script. One key may give two (لا). */
-const FOREIGN = /^(?:(?![\p{Script=Latin}\p{Script=Common}\p{Script=Inherited}])[\p{Letter}\p{Mark}]|(?![0-9])\p{Nd})+$/u;
+const FOREIGN =
+  /^(?:(?![\p{Script=Latin}\p{Script=Common}\p{Script=Inherited}])[\p{Letter}\p{Mark}]|(?![0-9])\p{Nd})+$/u;
 const SIGN = /^[!-/:-@[-`{-~]$/; // on many keyboards only to be had with AltGr or Option
 
 /** A keyboard event as text: "Shift+ArrowLeft", "Ctrl+z", "?". Command counts as Ctrl. */

@@ -26,7 +26,9 @@ export function fetched(notices, address, make = (module) => module, loaded = lo
     const module = await loaded(address).catch((error) => console.warn("a part did not arrive", error));
     if (!module) {
       await later(LEAVING);
-      notices.say(gettext("This part of the page did not arrive: the server does not answer. Nothing is lost – please try again"));
+      notices.say(
+        gettext("This part of the page did not arrive: the server does not answer. Nothing is lost – please try again"),
+      );
     }
     return module ? (part ??= make(module)) : null;
   };

@@ -1,10 +1,10 @@
 import { Api } from "../base/api.js";
 import { element } from "../base/dom.js";
-import { Images } from "../views/images.js";
+import { problemWords } from "../base/failure_words.js";
 import { gettext } from "../base/messages.js";
 import { Notices } from "../base/notices.js";
-import { problemWords } from "../base/failure_words.js";
 import { fetchTables, openScene } from "../tables/tables.js";
+import { Images } from "../views/images.js";
 import { CompareStore } from "./store.js";
 import { buildViewer } from "./viewer.js";
 
@@ -23,7 +23,11 @@ try {
       { className: "start-problem", role: "alert" },
       element("h1", {}, gettext("The comparison could not be shown")),
       element("p", {}, problemWords(error)),
-      element("button", { type: "button", className: "main", onclick: () => window.location.reload() }, gettext("Try again")),
+      element(
+        "button",
+        { type: "button", className: "main", onclick: () => window.location.reload() },
+        gettext("Try again"),
+      ),
       element("a", { href: home }, gettext("Back")),
     ),
   );
@@ -36,7 +40,12 @@ async function start() {
   const store = new CompareStore(frames);
   if (window.location.hash) store.open(Number(window.location.hash.slice(1)));
   images.want([store.current]);
-  const scene = await openScene(api, answer, () => images.settled(store.current), (words) => (root.textContent = words));
+  const scene = await openScene(
+    api,
+    answer,
+    () => images.settled(store.current),
+    (words) => (root.textContent = words),
+  );
   const notices = new Notices();
   store.on("frame", () => {
     window.history.replaceState(null, "", `#${store.current}`);

@@ -1,7 +1,7 @@
 import { element } from "../base/dom.js";
-import { HALO, WHITE, YELLOW } from "../views/styles.js";
-import { boxBounds, drawBox, drawFoot, drawLabel, drawPath, labelWidth } from "../views/marks.js";
 import { gettext } from "../base/messages.js";
+import { boxBounds, drawBox, drawFoot, drawLabel, drawPath, labelWidth } from "../views/marks.js";
+import { HALO, WHITE, YELLOW } from "../views/styles.js";
 
 /**
  * How the four kinds of people look: colour, line and sign all say the same. Colours lie on photographs, so they
@@ -62,7 +62,8 @@ function drawFeet(ctx, mark, feet, look) {
   for (const { x, y, side } of feet) {
     if (mark.kind === "missed") drawCross(ctx, x, y, look.colour, Math.PI / 4);
     else if (mark.kind === "extra") drawCross(ctx, x, y, look.colour, 0);
-    else drawFoot(ctx, x, y, { ...look, dash: side === mark.truth ? [1] : [] }, side === mark.truth ? FOOT + 1.5 : FOOT);
+    else
+      drawFoot(ctx, x, y, { ...look, dash: side === mark.truth ? [1] : [] }, side === mark.truth ? FOOT + 1.5 : FOOT);
     if (look.selected) drawRing(ctx, x, y, look.colour);
   }
   if (mark.kind === "swapped") drawDiamond(ctx, feet[0], look.colour);
@@ -71,17 +72,32 @@ function drawFeet(ctx, mark, feet, look) {
 function drawCross(ctx, x, y, colour, angle) {
   const arms = [angle, angle + Math.PI / 2].map((turn) => [7 * Math.cos(turn), 7 * Math.sin(turn)]);
   for (const [dx, dy] of arms) {
-    drawPath(ctx, [{ x: x - dx, y: y - dy }, { x: x + dx, y: y + dy }], { colour, width: 2.5 });
+    drawPath(
+      ctx,
+      [
+        { x: x - dx, y: y - dy },
+        { x: x + dx, y: y + dy },
+      ],
+      { colour, width: 2.5 },
+    );
   }
 }
 
 function drawDiamond(ctx, { x, y }, colour) {
-  const points = [[0, -8], [8, 0], [0, 8], [-8, 0]].map(([dx, dy]) => ({ x: x + dx, y: y + dy }));
+  const points = [
+    [0, -8],
+    [8, 0],
+    [0, 8],
+    [-8, 0],
+  ].map(([dx, dy]) => ({ x: x + dx, y: y + dy }));
   drawPath(ctx, points, { colour, width: 2, closed: true });
 }
 
 function drawRing(ctx, x, y, colour) {
-  for (const [width, style] of [[4, HALO], [1.5, colour]]) {
+  for (const [width, style] of [
+    [4, HALO],
+    [1.5, colour],
+  ]) {
     ctx.beginPath();
     ctx.arc(x, y, 13, 0, 2 * Math.PI);
     ctx.lineWidth = width;

@@ -1,8 +1,8 @@
-import { mapColours, startOptions } from "../views/display.js";
 import { element, setText } from "../base/dom.js";
 import { chord } from "../base/key_press.js";
-import { Layout } from "../views/layout.js";
 import { gettext } from "../base/messages.js";
+import { mapColours, startOptions } from "../views/display.js";
+import { Layout } from "../views/layout.js";
 import { Panes } from "../views/panes.js";
 import { Pointer } from "../views/pointer.js";
 import { CompareIntents } from "./intents.js";
@@ -34,7 +34,10 @@ export function buildViewer(root, { store, scene, images, names, home }) {
   const stage = element("main", { className: "stage" });
   root.replaceChildren(bar(store, actions, names, home), stage);
   const layout = new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
-  new Pointer(panes, new CompareIntents({ store, enlarge: (pane) => layout.setLarge(layout.large === pane ? null : pane) }));
+  new Pointer(
+    panes,
+    new CompareIntents({ store, enlarge: (pane) => layout.setLarge(layout.large === pane ? null : pane) }),
+  );
   document.addEventListener("keydown", (event) => onKey(event, actions));
   document.documentElement.addEventListener("themechange", () => panes.set("mapColours", mapColours()));
   window.addEventListener("focus", () => images.retryAll());
@@ -74,7 +77,8 @@ function bar(store, actions, names, home) {
     );
   store.on("frame", show);
   show();
-  const button = (key, words) => element("button", { type: "button", onclick: () => actions[key]() }, words, " ", element("kbd", {}, key));
+  const button = (key, words) =>
+    element("button", { type: "button", onclick: () => actions[key]() }, words, " ", element("kbd", {}, key));
   return element(
     "header",
     { className: "bar" },
@@ -83,7 +87,11 @@ function bar(store, actions, names, home) {
     place,
     button("n", gettext("Next")),
     element("span", { className: "gap" }),
-    element("span", { className: "left" }, gettext("← → in time · Tab next person · Esc whole view · wheel zooms · double click: one view large")),
+    element(
+      "span",
+      { className: "left" },
+      gettext("← → in time · Tab next person · Esc whole view · wheel zooms · double click: one view large"),
+    ),
     button("l", gettext("Labels")),
   );
 }

@@ -29,7 +29,8 @@ export function screenStep(camera, x, y) {
   const alongRows = direction(camera, x, y, 0, REACH);
   if (!alongColumns || !alongRows) return null;
   const steps = [];
-  for (const sign of [1, -1]) steps.push({ columns: sign, rows: 0, x: sign * alongColumns.x, y: sign * alongColumns.y });
+  for (const sign of [1, -1])
+    steps.push({ columns: sign, rows: 0, x: sign * alongColumns.x, y: sign * alongColumns.y });
   for (const sign of [1, -1]) steps.push({ columns: 0, rows: sign, x: sign * alongRows.x, y: sign * alongRows.y });
   return steps;
 }

@@ -83,8 +83,7 @@ function foldRadius({ k1, k2, k3, k4, k5, k6 }) {
   for (let index = 1; index <= 10000; index += 1) {
     const r = index * 0.001;
     const r2 = r * r;
-    const landed =
-      (r * (1 + r2 * (k1 + r2 * (k2 + r2 * k3)))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)));
+    const landed = (r * (1 + r2 * (k1 + r2 * (k2 + r2 * k3)))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)));
     if (!(landed > landedBefore)) return r;
     landedBefore = landed;
   }

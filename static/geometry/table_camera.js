@@ -22,7 +22,9 @@ export class TableCamera {
    */
   constructor({ name, width, height, rotation, tvec, index: number }, grid, { boxes, feet, index }) {
     Object.assign(this, { index: number, name, width, height, byTable: true });
-    this.centre = [0, 1, 2].map((axis) => -(rotation[0][axis] * tvec[0] + rotation[1][axis] * tvec[1] + rotation[2][axis] * tvec[2]));
+    this.centre = [0, 1, 2].map(
+      (axis) => -(rotation[0][axis] * tvec[0] + rotation[1][axis] * tvec[1] + rotation[2][axis] * tvec[2]),
+    );
     this._grid = grid;
     this._feet = { boxes, feet, width, height };
     this._index = index;
@@ -144,7 +146,8 @@ class Plane {
   static through(samples) {
     const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
     const middle = [0, 1, 2, 3].map((axis) => mean(samples.map((one) => one[axis])));
-    const together = (one, other) => mean(samples.map((sample) => (sample[one] - middle[one]) * (sample[other] - middle[other])));
+    const together = (one, other) =>
+      mean(samples.map((sample) => (sample[one] - middle[one]) * (sample[other] - middle[other])));
     const [cc, cr, rr] = [together(0, 0), together(0, 1), together(1, 1)];
     const determinant = cc * rr - cr * cr;
     if (!(determinant > 1e-6)) return null;

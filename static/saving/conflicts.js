@@ -19,9 +19,7 @@ export async function askAboutConflicts(scene, store, { frame, conflicts, author
     buttons: [{ id: "apply", label: gettext("Use these"), main: true }],
   };
   while ((await ask(question)) !== "apply"); // Escape decides nothing
-  return new Map(
-    conflicts.map(({ person }, index) => [person, rows[index].querySelector("input:checked").value]),
-  );
+  return new Map(conflicts.map(({ person }, index) => [person, rows[index].querySelector("input:checked").value]));
 }
 
 /** Who the other is, as far as is known: another tab does not say. */

@@ -63,7 +63,8 @@ class Database {
 function upgrade(database, from) {
   const make = (name, keyPath) => database.createObjectStore(name, { keyPath });
   if (from < 1) make(FRAMES, ["layer", "tab", "frame"]).createIndex("layer", "layer");
-  for (const name of [HISTORIES, DISMISSED]) if (database.objectStoreNames.contains(name)) database.deleteObjectStore(name);
+  for (const name of [HISTORIES, DISMISSED])
+    if (database.objectStoreNames.contains(name)) database.deleteObjectStore(name);
   make(HISTORIES, ["layer", "tab"]).createIndex("layer", "layer");
   make(DISMISSED, "layer");
 }

@@ -69,7 +69,10 @@ export class Journal {
   async recover() {
     const records = await this._tried(async () => [
       ...(await this._database.ofLayer(FRAMES, this._layer)),
-      ...(this._formerly === null ? [] : await this._database.ofLayer(FRAMES, this._formerly)).map((one) => ({ ...one, formerly: true })),
+      ...(this._formerly === null ? [] : await this._database.ofLayer(FRAMES, this._formerly)).map((one) => ({
+        ...one,
+        formerly: true,
+      })),
     ]);
     const mine = (records ?? []).filter(({ tab }) => tab === this._tab.name || !this._tab.alive.has(tab));
     return mine.sort((one, other) => one.at - other.at);
@@ -82,7 +85,8 @@ export class Journal {
   }
 
   writeHistory(dump) {
-    const work = () => this._database.put(HISTORIES, { layer: this._layer, tab: this._tab.name, at: Date.now(), ...dump() });
+    const work = () =>
+      this._database.put(HISTORIES, { layer: this._layer, tab: this._tab.name, at: Date.now(), ...dump() });
     this._queue("history", work, PAUSE_OF_HISTORY);
   }
 
@@ -114,7 +118,10 @@ export class Journal {
     const own = [this._layer, this._tab.name, frame];
     const gone = this._takenOver.get(frame) ?? [];
     await this._database.replace(FRAMES, value, value ? gone : [own, ...gone]);
-    this._takenOver.set(frame, (this._takenOver.get(frame) ?? []).filter((key) => !gone.includes(key)));
+    this._takenOver.set(
+      frame,
+      (this._takenOver.get(frame) ?? []).filter((key) => !gone.includes(key)),
+    );
   }
 
   /** A database that cannot be read keeps nobody from working. */

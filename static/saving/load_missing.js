@@ -14,5 +14,7 @@ export async function loadMissing({ store, loader, notices }, numbers) {
 }
 
 function sayNotLoaded(notices, error) {
-  notices.say(gettext("Not possible now: the other frames could not be loaded, {reason}", { reason: failureWords(error) }));
+  notices.say(
+    gettext("Not possible now: the other frames could not be loaded, {reason}", { reason: failureWords(error) }),
+  );
 }

@@ -24,7 +24,12 @@ export function saveWords(status, revision, tutorial = false) {
       return { text: gettext("Not saved: {reason}", { reason: status.reason }) };
     case "read_only":
       return n
-        ? { text: gettext("Read-only: {reason} ({edits})", { reason: status.reason, edits: kept({ ...status, kept: true }) }) }
+        ? {
+            text: gettext("Read-only: {reason} ({edits})", {
+              reason: status.reason,
+              edits: kept({ ...status, kept: true }),
+            }),
+          }
         : { text: gettext("Read-only: {reason}", { reason: status.reason }) };
     default:
       throw new RangeError(`unknown save state ${status.kind}`);
@@ -34,5 +39,9 @@ export function saveWords(status, revision, tutorial = false) {
 function kept({ unsaved, kept: durable }) {
   return durable
     ? ngettext("{n} edit kept on this computer", "{n} edits kept on this computer", unsaved)
-    : ngettext("{n} edit waiting in this window: keep it open", "{n} edits waiting in this window: keep it open", unsaved);
+    : ngettext(
+        "{n} edit waiting in this window: keep it open",
+        "{n} edits waiting in this window: keep it open",
+        unsaved,
+      );
 }

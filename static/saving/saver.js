@@ -1,9 +1,9 @@
-import { annotation, carriedOf } from "../truth/annotation.js";
 import { ApiError, NetworkError } from "../base/api.js";
-import { baseOf, isSame, plain, readRecord, recordOf, stateOf } from "./edit_record.js";
 import { Emitter } from "../base/emitter.js";
 import { uuid4 } from "../base/identifiers.js";
+import { annotation, carriedOf } from "../truth/annotation.js";
 import { mergeFlag, mergePeople } from "../truth/merge.js";
+import { baseOf, isSame, plain, readRecord, recordOf, stateOf } from "./edit_record.js";
 
 const DELAY = 700; // ms from an edit to its save
 const FIRST_RETRY = 1000;
@@ -38,7 +38,15 @@ export class Saver extends Emitter {
   install(state) {
     const { number } = state;
     const added = this._slots.get(number)?.added ?? new Set();
-    this._slots.set(number, { base: baseOf(state), sending: null, busy: null, edits: 0, added, question: null, refused: null });
+    this._slots.set(number, {
+      base: baseOf(state),
+      sending: null,
+      busy: null,
+      edits: 0,
+      added,
+      question: null,
+      refused: null,
+    });
     this._store.install(number, baseOf(state), "server");
   }
 
@@ -47,7 +55,8 @@ export class Saver extends Emitter {
     const slot = this._slots.get(state.number);
     if (slot.edits === 0 && slot.base.revision <= state.revision) return this.install(state);
     // A save that has begun brings the newer state itself.
-    if (slot.edits && !slot.sending && !slot.question && slot.base.revision < state.revision) this._merge(state.number, slot, state);
+    if (slot.edits && !slot.sending && !slot.question && slot.base.revision < state.revision)
+      this._merge(state.number, slot, state);
   }
 
   /** Edits of an earlier visit that the server may not have: they go on from where they started. */
@@ -298,7 +307,11 @@ export class Saver extends Emitter {
     const { people, conflicts, renumber } = mergePeople(base.people, ours, theirs.people);
     const nobody = mergeFlag(base.nobody, now.nobody, theirs.nobody) && people.size === 0;
     const finished = carriedOf(people).length === 0 && (people.size > 0 || nobody);
-    this._store.install(frame, { people, nobody, done: mergeFlag(base.done, now.done, theirs.done) && finished }, source);
+    this._store.install(
+      frame,
+      { people, nobody, done: mergeFlag(base.done, now.done, theirs.done) && finished },
+      source,
+    );
     for (const person of renumber) this._renumber(frame, ours.get(person));
     if (!conflicts.length) return;
     slot.question = { frame, conflicts, author, savedAt };
@@ -309,7 +322,9 @@ export class Saver extends Emitter {
   _renumber(frame, one) {
     const { person: from } = one;
     const to = this._store.takePerson();
-    const others = [...this._slots].filter(([number, slot]) => number !== frame && this._isOurs(slot, number, from)).map(([number]) => number);
+    const others = [...this._slots]
+      .filter(([number, slot]) => number !== frame && this._isOurs(slot, number, from))
+      .map(([number]) => number);
     const moved = (number, old) => ({ frame: number, person: to, after: annotation({ ...old, person: to }) });
     this._store.apply([
       moved(frame, one),

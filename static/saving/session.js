@@ -1,11 +1,11 @@
-import { Activity } from "./activity.js";
+import { openScene } from "../tables/tables.js";
 import { History } from "../truth/history.js";
-import { Journal } from "./journal.js";
 import { withRefill } from "../truth/keyframes.js";
+import { Store } from "../truth/store.js";
+import { Activity } from "./activity.js";
+import { Journal } from "./journal.js";
 import { Loader } from "./loader.js";
 import { Saver } from "./saver.js";
-import { Store } from "../truth/store.js";
-import { openScene } from "../tables/tables.js";
 
 /**
  * Everything behind the page: what is annotated, how it is kept, and the pictures. Knows no page.
@@ -20,7 +20,10 @@ import { openScene } from "../tables/tables.js";
  */
 export async function openSession({ api, scene: answer, first, images }, say) {
   const scene = await openScene(api, answer, () => images.settled(first), say);
-  const store = new Store(scene.frames.map(({ number }) => number), scene.nextPerson);
+  const store = new Store(
+    scene.frames.map(({ number }) => number),
+    scene.nextPerson,
+  );
   const loader = new Loader({ api, scene, store });
   const [states, journal] = await Promise.all([loader.start(first), Journal.open(...layerNames(scene))]);
   const activity = new Activity();

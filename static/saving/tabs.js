@@ -12,7 +12,8 @@ export async function joinTabs(layer) {
   const asking = uuid4();
   const tab = { name: storedName(), alive: new Set(), channel, next: 0, heard: 0, onNumbers: () => {} };
   channel.onmessage = ({ data }) => {
-    if (data.kind === "who" && data.asking !== asking) channel.postMessage({ kind: "here", name: tab.name, next: tab.next });
+    if (data.kind === "who" && data.asking !== asking)
+      channel.postMessage({ kind: "here", name: tab.name, next: tab.next });
     if (data.kind === "here") tab.alive.add(data.name);
     if (data.next) tab.onNumbers((tab.heard = Math.max(tab.heard, data.next)));
   };

@@ -5,7 +5,9 @@ const SCALE = 3;
 for (const figure of document.querySelectorAll("figure[data-figure]")) {
   const button = figure.querySelector("[data-png]");
   button.hidden = false;
-  button.addEventListener("click", async () => save(await png(figure.querySelector("svg")), `${figure.dataset.figure}.png`));
+  button.addEventListener("click", async () =>
+    save(await png(figure.querySelector("svg")), `${figure.dataset.figure}.png`),
+  );
 }
 
 async function png(svg) {

@@ -1,8 +1,9 @@
 /**
  * The tables in which boxes of the usual person are looked up: fetched one camera after the other, by a worker.
  */
-import { MODELS } from "../geometry/camera.js";
+
 import { gettext } from "../base/messages.js";
+import { MODELS } from "../geometry/camera.js";
 import { Scene } from "../truth/scene.js";
 
 /**
@@ -33,7 +34,10 @@ export async function openScene(api, answer, pictures, say) {
 
 /** @returns {Promise<Map<number, {camera: object, boxes: Int16Array}>>} by index */
 async function camerasByTable(api, answer, wanted, say) {
-  const [{ TableCamera }, { Grid }] = await Promise.all([import("../geometry/table_camera.js"), import("../geometry/grid.js")]);
+  const [{ TableCamera }, { Grid }] = await Promise.all([
+    import("../geometry/table_camera.js"),
+    import("../geometry/grid.js"),
+  ]);
   const grid = new Grid(answer.grid);
   const made = new Map();
   const keep = (camera, { error, ...table }) => {
@@ -47,7 +51,11 @@ async function camerasByTable(api, answer, wanted, say) {
 function loadingWords({ name }, loaded, total) {
   const megabytes = (bytes) => (bytes / 1e6).toFixed(1);
   if (!loaded) return gettext("Loading what {view} sees…", { view: name });
-  return gettext("Loading what {view} sees: {loaded} of {total} MB", { view: name, loaded: megabytes(loaded), total: megabytes(total) });
+  return gettext("Loading what {view} sees: {loaded} of {total} MB", {
+    view: name,
+    loaded: megabytes(loaded),
+    total: megabytes(total),
+  });
 }
 
 /** @param {import("../geometry/camera.js").CameraJSON[]} cameras */

@@ -4,9 +4,10 @@
  * @typedef {{label: string, frame: number, edits: object[], selection: {before, after}, group: string|null,
  *            at: number}} Patch
  */
-import { CARRIED, VALIDATED, annotation, changed } from "./annotation.js";
-import { same } from "./merge.js";
+
 import { gettext, ngettext } from "../base/messages.js";
+import { annotation, CARRIED, changed, VALIDATED } from "./annotation.js";
+import { same } from "./merge.js";
 
 /** A new person, selected. */
 export function place(store, { position, height = null, radius = null }) {
@@ -41,7 +42,12 @@ export function remove(store, person) {
 /** People from elsewhere come into frame `number`. */
 export function bring(store, number, annotations) {
   const label = ngettext("carry over {n} person", "carry over {n} people", annotations.length);
-  return patch(store, label, annotations.map((one) => put(number, one)), { frame: number });
+  return patch(
+    store,
+    label,
+    annotations.map((one) => put(number, one)),
+    { frame: number },
+  );
 }
 
 /** One person as in another frame, to be looked at; takes the place of what was known here. */
@@ -98,7 +104,9 @@ export function inverse(original) {
 export function combined(first, second) {
   const edits = first.edits.map((edit) => ({ ...edit }));
   for (const edit of second.edits) {
-    const known = edits.find((one) => !one.flags && !edit.flags && one.frame === edit.frame && one.person === edit.person);
+    const known = edits.find(
+      (one) => !one.flags && !edit.flags && one.frame === edit.frame && one.person === edit.person,
+    );
     if (known) known.after = edit.after;
     else edits.push(edit);
   }

@@ -39,7 +39,8 @@ export function spotWords(scene, spot, byTable = false) {
 }
 
 function spotRemark({ problem, occupant, border }) {
-  if (problem === "outside") return gettext("{metres} m outside the ground area", { metres: Math.max(-border, 0.01).toFixed(2) });
+  if (problem === "outside")
+    return gettext("{metres} m outside the ground area", { metres: Math.max(-border, 0.01).toFixed(2) });
   if (problem === "occupied") return gettext("person {person} stands exactly here", { person: occupant.person });
   if (border < NEAR) return gettext("{metres} m to the border", { metres: border.toFixed(2) });
   return null;

@@ -1,6 +1,6 @@
+import { Emitter } from "../base/emitter.js";
 import { annotation } from "./annotation.js";
 import { combined, inverse } from "./commands.js";
-import { Emitter } from "../base/emitter.js";
 import { same } from "./merge.js";
 
 const LONGEST = 500; // steps kept
@@ -104,7 +104,9 @@ export class History extends Emitter {
    * does not come back either.
    */
   _stillTrue(edits) {
-    const found = edits.filter((edit) => !edit.flags && same(this._store.person(edit.person, edit.frame) ?? null, edit.before));
+    const found = edits.filter(
+      (edit) => !edit.flags && same(this._store.person(edit.person, edit.frame) ?? null, edit.before),
+    );
     const complete = (number) => edits.every((edit) => edit.frame !== number || edit.flags || found.includes(edit));
     const flags = edits.filter((edit) => edit.flags && complete(edit.frame) && this._saysStill(edit));
     return [...found, ...flags];

@@ -6,10 +6,11 @@
  *   `other`: the new number, or the second person. `keep`: who stays where both are marked: the one that gets the
  *   number (moved), the one that has it (present), or both with their numbers swapped.
  */
+
+import { gettext } from "../base/messages.js";
 import { changed } from "./annotation.js";
 import { patch } from "./commands.js";
 import { same } from "./merge.js";
-import { gettext } from "../base/messages.js";
 
 export const LARGEST = 999_999; // a slip of the finger must not use up the numbers of the whole layer
 
@@ -22,7 +23,10 @@ export function plan(store, choice) {
   const problem = problemOf(store, choice);
   if (problem) return { patch: null, both: [], problem };
   const numbers = framesIn(store, scopeOf(choice));
-  const both = choice.kind === "rename" || choice.kind === "join" ? framesWith(store, person, numbers).filter((number) => store.person(other, number)) : [];
+  const both =
+    choice.kind === "rename" || choice.kind === "join"
+      ? framesWith(store, person, numbers).filter((number) => store.person(other, number))
+      : [];
   const wanted = PLANS[choice.kind](store, choice, numbers);
   if (!wanted.edits.length) return { patch: null, both, problem: gettext("That would change nothing") };
   return { patch: wanted, both, problem: null };
@@ -41,7 +45,13 @@ export function everybody(store) {
 
 const PLANS = {
   rename(store, { person, other, keep }, numbers) {
-    const names = keep === "both" ? [[person, other], [other, person]] : [[person, other]];
+    const names =
+      keep === "both"
+        ? [
+            [person, other],
+            [other, person],
+          ]
+        : [[person, other]];
     const label = gettext("rename person {person} to {other}", { person, other });
     return patch(store, label, relabelled(store, numbers, new Map(names), keep), { select: other });
   },
@@ -56,7 +66,10 @@ const PLANS = {
   },
   swap(store, { person, other }, numbers) {
     const label = gettext("swap person {person} and person {other}", { person, other });
-    const names = new Map([[person, other], [other, person]]);
+    const names = new Map([
+      [person, other],
+      [other, person],
+    ]);
     return patch(store, label, relabelled(store, numbers, names), { select: other }); // the same body stays selected
   },
   remove(store, { person, scope }, numbers) {
@@ -99,7 +112,9 @@ function relabelled(store, numbers, names, keep = "moved") {
 function problemOf(store, { kind, person, other }) {
   if (kind === "split") {
     const [first] = framesWith(store, person);
-    return first === undefined || first >= store.current ? gettext("Person {person} is not marked before this frame: there is nothing to split", { person }) : null;
+    return first === undefined || first >= store.current
+      ? gettext("Person {person} is not marked before this frame: there is nothing to split", { person })
+      : null;
   }
   if (kind === "remove") return null;
   if (!Number.isInteger(other) || other < 0 || other > LARGEST) {
@@ -107,7 +122,10 @@ function problemOf(store, { kind, person, other }) {
   }
   if (other === person) return gettext("That is the number it has");
   if (kind === "rename" && !store.isUnused(other) && !framesWith(store, other).length) {
-    return gettext("Number {other} belonged to somebody, and numbers are never given twice. Free from {free} on.", { other, free: store.nextPerson });
+    return gettext("Number {other} belonged to somebody, and numbers are never given twice. Free from {free} on.", {
+      other,
+      free: store.nextPerson,
+    });
   }
   return null;
 }

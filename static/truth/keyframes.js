@@ -2,9 +2,9 @@
  * Keyframes: where a person is validated. Between two of them the person is filled in on the straight line, in
  * metres, and stays marked until looked at. Nothing here changes the store; edits are {frame, person, after}.
  */
-import { CARRIED, VALIDATED, annotation } from "./annotation.js";
-import { freePosition, predictPeople } from "./propagation.js";
+import { annotation, CARRIED, VALIDATED } from "./annotation.js";
 import { same } from "./merge.js";
+import { freePosition, predictPeople } from "./propagation.js";
 
 const INTERPOLATED = "interpolated";
 
@@ -40,11 +40,13 @@ export function extendEdits(store, scene, person) {
   const [first, last] = [store.numbers.indexOf(known[0]), store.numbers.indexOf(known.at(-1))];
   const source = (number) => ({ time: scene.seconds(number), people: onlyOne(store, person, number) });
   const follow = (numbers, sources) =>
-    numbers.filter((number) => store.frame(number).loaded).map((number) => {
-      const [after] = predictPeople(scene.grid, scene.seconds(number), sources);
-      const taken = takenIn(store, number, person);
-      return { frame: number, person, after: placed(scene, after, scene.metres(after.position), taken) };
-    });
+    numbers
+      .filter((number) => store.frame(number).loaded)
+      .map((number) => {
+        const [after] = predictPeople(scene.grid, scene.seconds(number), sources);
+        const taken = takenIn(store, number, person);
+        return { frame: number, person, after: placed(scene, after, scene.metres(after.position), taken) };
+      });
   return [
     ...follow(store.numbers.slice(0, first), known.map(source)),
     ...follow(store.numbers.slice(last + 1), known.map(source).reverse()),
@@ -55,7 +57,9 @@ export function extendEdits(store, scene, person) {
 export function withRefill(store, scene, patch) {
   const edits = refillEdits(store, scene, patch);
   const before = (edit) => store.person(edit.person, edit.frame) ?? null;
-  return edits.length ? { ...patch, edits: [...patch.edits, ...edits.map((edit) => ({ ...edit, before: before(edit) }))] } : patch;
+  return edits.length
+    ? { ...patch, edits: [...patch.edits, ...edits.map((edit) => ({ ...edit, before: before(edit) }))] }
+    : patch;
 }
 
 /**
@@ -63,7 +67,9 @@ export function withRefill(store, scene, patch) {
  * as nobody has looked at them.
  */
 function refillEdits(store, scene, patch) {
-  const edited = new Map(patch.edits.filter((edit) => !edit.flags).map((edit) => [`${edit.frame} ${edit.person}`, edit]));
+  const edited = new Map(
+    patch.edits.filter((edit) => !edit.flags).map((edit) => [`${edit.frame} ${edit.person}`, edit]),
+  );
   const edits = new Map();
   for (const { frame, person, before, after } of edited.values()) {
     if (!isKey(before) && !isKey(after)) continue;
@@ -84,7 +90,12 @@ function gapsBeside(store, frame, at) {
   const index = store.numbers.indexOf(frame);
   const before = store.numbers.slice(0, index).findLast((number) => isKey(at(number)));
   const after = store.numbers.slice(index + 1).find((number) => isKey(at(number)));
-  const gaps = isKey(at(frame)) ? [[before, frame], [frame, after]] : [[before, after]];
+  const gaps = isKey(at(frame))
+    ? [
+        [before, frame],
+        [frame, after],
+      ]
+    : [[before, after]];
   return gaps.filter(([from, to]) => from !== undefined && to !== undefined);
 }
 

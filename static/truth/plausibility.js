@@ -25,7 +25,11 @@ export function findWarnings(frames, ground) {
     time,
     people: new Map([...people].map(([person, { position }]) => [person, ground.metres(position)])),
   }));
-  const found = [...placed.flatMap(tooClose), ...placed.slice(1).flatMap((frame, index) => tooFast(placed[index], frame)), ...renumbered(placed, ground)];
+  const found = [
+    ...placed.flatMap(tooClose),
+    ...placed.slice(1).flatMap((frame, index) => tooFast(placed[index], frame)),
+    ...renumbered(placed, ground),
+  ];
   return found.sort((one, other) => one.frame - other.frame);
 }
 
@@ -56,11 +60,19 @@ function tooFast(before, { number, time, people }) {
 
 /** Everybody who ends in the middle, with the nearest one who begins soon after, in the middle too. */
 function renumbered(frames, ground) {
-  const begins = ends([...frames].reverse()).map(({ index, ...start }) => ({ ...start, index: frames.length - 1 - index }));
+  const begins = ends([...frames].reverse()).map(({ index, ...start }) => ({
+    ...start,
+    index: frames.length - 1 - index,
+  }));
   const pairs = ends(frames).flatMap((end) =>
     begins
       .filter(({ index }) => index > end.index && index <= end.index + LOST)
-      .map((start) => ({ end, start, apart: distance(end.place, start.place), seconds: frames[start.index].time - frames[end.index].time }))
+      .map((start) => ({
+        end,
+        start,
+        apart: distance(end.place, start.place),
+        seconds: frames[start.index].time - frames[end.index].time,
+      }))
       .filter(({ apart, seconds }) => apart <= Math.min(FARTHEST, WALKING * seconds)),
   );
   const taken = new Set();
@@ -72,7 +84,9 @@ function renumbered(frames, ground) {
       taken.add(end).add(start);
       return true;
     })
-    .map(({ end, start, apart }) => warning("renumbered", frames[start.index].number, [end.person, start.person], [start.place], end.place, apart));
+    .map(({ end, start, apart }) =>
+      warning("renumbered", frames[start.index].number, [end.person, start.person], [start.place], end.place, apart),
+    );
 }
 
 /** Where each person is marked for the last time, unless that is the last frame. */

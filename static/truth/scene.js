@@ -1,4 +1,4 @@
-import { Camera, backProject, project } from "../geometry/camera.js";
+import { backProject, Camera, project } from "../geometry/camera.js";
 import { Grid } from "../geometry/grid.js";
 import { rectangle, rectangleIn } from "../geometry/rectangle.js";
 import { byPerson } from "./annotation.js";

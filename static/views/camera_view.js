@@ -1,7 +1,7 @@
 import { screenAxes } from "../geometry/directions.js";
 import { gridLines, gridOutline } from "../geometry/ground.js";
-import { CYAN } from "./styles.js";
 import { boxBounds, drawBox, drawFoot, drawPath } from "./marks.js";
+import { CYAN } from "./styles.js";
 
 const FULL_FROM = 1.15; // screen pixels per light pixel from which full resolution is worth its bytes
 
@@ -72,7 +72,11 @@ export class CameraView {
     if (options.grid) {
       this._lines ??= gridLines(this._scene.cameras[this.index], this._scene.grid, 1);
       for (const line of this._lines) {
-        drawPath(ctx, onPane(line, transform), { colour: "rgba(255, 255, 255, 0.6)", width: 0.75, rim: "rgba(6, 12, 18, 0.15)" });
+        drawPath(ctx, onPane(line, transform), {
+          colour: "rgba(255, 255, 255, 0.6)",
+          width: 0.75,
+          rim: "rgba(6, 12, 18, 0.15)",
+        });
       }
     }
     if (options.outline) {

@@ -21,13 +21,28 @@ export function paintCrop(ctx, scene, cell, one, here) {
   ctx.clip();
   if (picture) {
     const scale = picture.width / scene.cameras[view].width;
-    ctx.drawImage(picture, crop.x * scale, crop.y * scale, crop.width * scale, crop.height * scale, x, y, width, height);
+    ctx.drawImage(
+      picture,
+      crop.x * scale,
+      crop.y * scale,
+      crop.width * scale,
+      crop.height * scale,
+      x,
+      y,
+      width,
+      height,
+    );
   }
   const zoom = height / crop.height;
   const look = here ? lookOf(one, false) : MISSING;
   ctx.setLineDash(look.dash);
   ctx.lineWidth = 1;
   ctx.strokeStyle = look.colour;
-  ctx.strokeRect(x + (box.xmin - crop.x) * zoom, y + (box.ymin - crop.y) * zoom, (box.xmax - box.xmin) * zoom, (box.ymax - box.ymin) * zoom);
+  ctx.strokeRect(
+    x + (box.xmin - crop.x) * zoom,
+    y + (box.ymin - crop.y) * zoom,
+    (box.xmax - box.xmin) * zoom,
+    (box.ymax - box.ymin) * zoom,
+  );
   ctx.restore();
 }

@@ -38,8 +38,22 @@ export function crossItem(id, { x, y }, colour, size = 6) {
     look: colour,
     bounds: { xmin: x - reach, ymin: y - reach, xmax: x + reach, ymax: y + reach },
     draw: (ctx) => {
-      drawPath(ctx, [{ x: x - size, y: y - size }, { x: x + size, y: y + size }], { colour, width: 1.75 });
-      drawPath(ctx, [{ x: x - size, y: y + size }, { x: x + size, y: y - size }], { colour, width: 1.75 });
+      drawPath(
+        ctx,
+        [
+          { x: x - size, y: y - size },
+          { x: x + size, y: y + size },
+        ],
+        { colour, width: 1.75 },
+      );
+      drawPath(
+        ctx,
+        [
+          { x: x - size, y: y + size },
+          { x: x + size, y: y - size },
+        ],
+        { colour, width: 1.75 },
+      );
     },
   };
 }

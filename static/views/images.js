@@ -1,8 +1,8 @@
 import { ApiError } from "../base/api.js";
 import { Emitter } from "../base/emitter.js";
+import { problemWords } from "../base/failure_words.js";
 import { gettext } from "../base/messages.js";
 import { PictureShelf } from "./picture_shelf.js";
-import { problemWords } from "../base/failure_words.js";
 
 const AT_ONCE = 6; // connections a browser opens to one server
 const BUDGET = 256 * 1024 * 1024; // bytes of decoded pictures kept
@@ -18,7 +18,9 @@ export class Images extends Emitter {
   constructor(api, { frames, cameras }, budget = BUDGET) {
     super();
     this._api = api;
-    this._addresses = new Map(frames.map(({ number, images }) => [number, new Map(images.map((one) => [one.camera, one]))]));
+    this._addresses = new Map(
+      frames.map(({ number, images }) => [number, new Map(images.map((one) => [one.camera, one]))]),
+    );
     this._pictures = new Map();
     this._queue = [];
     this._running = 0;
@@ -26,7 +28,11 @@ export class Images extends Emitter {
     this._closeUp = new Map(); // camera → frame that a pane shows in full
     this._fullBytes = cameras.map(({ width, height }) => 4 * width * height);
     this._lightBytes = 0; // of the largest one so far
-    this._shelf = new PictureShelf(budget, (picture) => this._importance(picture), (picture) => this._forget(picture));
+    this._shelf = new PictureShelf(
+      budget,
+      (picture) => this._importance(picture),
+      (picture) => this._forget(picture),
+    );
   }
 
   /** What a pane shows of a frame, sharp or not. What no pane shows any more may be let go. */
@@ -49,9 +55,21 @@ export class Images extends Emitter {
       return picture;
     }
     const address = this._addresses.get(frame)?.get(camera)?.[size];
-    picture = { key, frame, camera, size, address, status: "waiting", bitmap: null, error: "", tries: 0, used: performance.now() };
+    picture = {
+      key,
+      frame,
+      camera,
+      size,
+      address,
+      status: "waiting",
+      bitmap: null,
+      error: "",
+      tries: 0,
+      used: performance.now(),
+    };
     this._pictures.set(key, picture);
-    if (address) this._enqueue(picture, size === "full"); // sharpness of what is looked at comes before prefetching
+    if (address)
+      this._enqueue(picture, size === "full"); // sharpness of what is looked at comes before prefetching
     else Object.assign(picture, { status: "error", error: gettext("no image") });
     return picture;
   }
@@ -63,7 +81,10 @@ export class Images extends Emitter {
 
   /** When nothing of a frame is on its way any more. */
   settled(frame) {
-    const busy = () => [...this._pictures.values()].some((one) => one.frame === frame && (one.status === "waiting" || one.status === "loading"));
+    const busy = () =>
+      [...this._pictures.values()].some(
+        (one) => one.frame === frame && (one.status === "waiting" || one.status === "loading"),
+      );
     return new Promise((done) => {
       if (!busy()) return done();
       const stop = this.on("picture", () => busy() || done(stop()));

@@ -119,7 +119,12 @@ function drawSelection(ctx, x, y, width, height, look) {
   ctx.strokeStyle = look.colour;
   ctx.strokeRect(x - 4, y - 4, width + 8, height + 8);
   ctx.fillStyle = look.colour;
-  for (const [handleX, handleY] of [[x, y], [x + width, y], [x, y + height], [x + width, y + height]]) {
+  for (const [handleX, handleY] of [
+    [x, y],
+    [x + width, y],
+    [x, y + height],
+    [x + width, y + height],
+  ]) {
     ctx.fillRect(handleX - HANDLE / 2, handleY - HANDLE / 2, HANDLE, HANDLE);
   }
 }

@@ -1,10 +1,10 @@
 import { element, setText } from "../base/dom.js";
-import { lookOf } from "./styles.js";
 import { gettext } from "../base/messages.js";
-import { damage, overlaps } from "./regions.js";
 import { paintSoon } from "../base/repaint.js";
-import { clamped, fit, resized } from "./transform.js";
 import { unit } from "../base/scale.js";
+import { damage, overlaps } from "./regions.js";
+import { lookOf } from "./styles.js";
+import { clamped, fit, resized } from "./transform.js";
 
 /**
  * One view on the screen: a canvas with the picture and a canvas with the marks. It paints what the model says

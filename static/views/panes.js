@@ -1,11 +1,11 @@
-import { CameraView } from "./camera_view.js";
 import { element } from "../base/dom.js";
-import { MapView } from "./map_view.js";
-import { gettext } from "../base/messages.js";
 import { Emitter } from "../base/emitter.js";
+import { gettext } from "../base/messages.js";
+import { CameraView } from "./camera_view.js";
+import { MapView } from "./map_view.js";
 import { Pane } from "./pane.js";
-import { focus } from "./transform.js";
 import { overlaps } from "./regions.js";
+import { focus } from "./transform.js";
 
 const SHARE = 0.5; // of a pane's height for a zoomed person
 const [ABOVE_FEET, BELOW_FEET] = [0.25, 0.05]; // of a person's height, shown close up

@@ -1,8 +1,8 @@
 import { element } from "../base/dom.js";
-import { drawFoot, drawPath } from "./marks.js";
-import { MapView } from "./map_view.js";
-import { clamped, focus } from "./transform.js";
 import { unit } from "../base/scale.js";
+import { MapView } from "./map_view.js";
+import { drawFoot, drawPath } from "./marks.js";
+import { clamped, focus } from "./transform.js";
 
 const SIZE = { width: 420, height: 170 }; // CSS pixels
 const SHARE = 0.75; // of the map that the paths fill
@@ -14,7 +14,13 @@ const LARGEST = 60; // CSS pixels per metre
  */
 export function pathMap(scene, mapColours, paths, label) {
   const ratio = (window.devicePixelRatio || 1) * unit();
-  const canvas = element("canvas", { className: "path-map", width: SIZE.width * ratio, height: SIZE.height * ratio, role: "img", "aria-label": label });
+  const canvas = element("canvas", {
+    className: "path-map",
+    width: SIZE.width * ratio,
+    height: SIZE.height * ratio,
+    role: "img",
+    "aria-label": label,
+  });
   const view = new MapView(scene, "");
   const points = paths.map(({ positions }) => positions.map((position) => view.point(scene.metres(position))));
   const transform = clamped(focus(around(points.flat()), SIZE, SHARE, LARGEST), view.size, SIZE, LARGEST);

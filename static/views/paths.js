@@ -3,8 +3,8 @@
  * validated positions it is solid, otherwise dashed; over frames without the person it is dotted.
  */
 import { VALIDATED } from "../truth/annotation.js";
-import { CYAN, WHITE, YELLOW } from "./styles.js";
 import { drawPath } from "./marks.js";
+import { CYAN, WHITE, YELLOW } from "./styles.js";
 
 const REACH = 15; // frames before and after the open one
 const ROOM = 6; // CSS pixels a line with its dots reaches beyond its points
@@ -17,12 +17,10 @@ const STYLES = {
 /** Frames around the open one in which a person is, in order: [{number, annotation}]. Pure. */
 export function trail(store, person) {
   const index = store.numbers.indexOf(store.current);
-  return store.numbers
-    .slice(Math.max(0, index - REACH), index + REACH + 1)
-    .flatMap((number) => {
-      const annotation = store.person(person, number);
-      return annotation ? [{ number, annotation }] : [];
-    });
+  return store.numbers.slice(Math.max(0, index - REACH), index + REACH + 1).flatMap((number) => {
+    const annotation = store.person(person, number);
+    return annotation ? [{ number, annotation }] : [];
+  });
 }
 
 /** Whether two steps of a trail are joined by a solid, a dashed or a dotted line. Pure. */
@@ -75,7 +73,10 @@ export class Paths {
       item?.transform === pane.transform &&
       item.selected === (item.person === this.store.selection) &&
       item.steps.length === steps.length &&
-      steps.every(({ annotation, number }, index) => annotation === item.steps[index].annotation && number === item.steps[index].number)
+      steps.every(
+        ({ annotation, number }, index) =>
+          annotation === item.steps[index].annotation && number === item.steps[index].number,
+      )
     );
   }
 
@@ -92,7 +93,12 @@ export class Paths {
       steps,
       selected,
       transform: pane.transform,
-      bounds: { xmin: Math.min(...xs) - ROOM, ymin: Math.min(...ys) - ROOM, xmax: Math.max(...xs) + ROOM, ymax: Math.max(...ys) + ROOM },
+      bounds: {
+        xmin: Math.min(...xs) - ROOM,
+        ymin: Math.min(...ys) - ROOM,
+        xmax: Math.max(...xs) + ROOM,
+        ymax: Math.max(...ys) + ROOM,
+      },
       draw: (ctx) => this._draw(ctx, steps, points, selected),
     };
   }

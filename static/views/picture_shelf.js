@@ -42,7 +42,10 @@ export class PictureShelf {
     const own = this._importance(picture);
     const ranked = [...this._bytes.keys()]
       .map((one) => ({ one, importance: this._importance(one) }))
-      .filter(({ one, importance }) => one.bitmap && (importance < own || (importance === own && one.used < picture.used - IDLE)))
+      .filter(
+        ({ one, importance }) =>
+          one.bitmap && (importance < own || (importance === own && one.used < picture.used - IDLE)),
+      )
       .sort((first, second) => first.importance - second.importance || first.one.used - second.one.used);
     const leaving = [];
     for (const { one } of ranked) {

@@ -71,7 +71,10 @@ export class Pointer {
       this._over = null;
       this._intents.leave();
     });
-    element.addEventListener("dblclick", (event) => event.target.closest("button") || this._intents.enlarge(pane, event));
+    element.addEventListener(
+      "dblclick",
+      (event) => event.target.closest("button") || this._intents.enlarge(pane, event),
+    );
     element.addEventListener("contextmenu", (event) => this._onMenu(pane, event));
     element.addEventListener("wheel", (event) => this._onWheel(pane, event), { passive: false });
   }
@@ -83,7 +86,14 @@ export class Pointer {
     clearTimeout(this._longPress);
     if (event.button === 2) return;
     if (this._fingers.down(pane, event)) return this._forget(pane); // a second finger: nothing is clicked, the picture is pinched
-    this._press = { pane, at: pane.local(event), last: event, dragged: false, grip: this._gripOf(pane, event), holding: false };
+    this._press = {
+      pane,
+      at: pane.local(event),
+      last: event,
+      dragged: false,
+      grip: this._gripOf(pane, event),
+      holding: false,
+    };
     pane.element.setPointerCapture(event.pointerId);
     if (event.pointerType === "touch") this._longPress = setTimeout(() => this._onLongPress(pane, event), LONG);
   }
@@ -123,7 +133,14 @@ export class Pointer {
 
   /** Fingers pan: on glass nobody should be moved by accident. Shift and the other buttons mean the picture, too. */
   _gripOf(pane, event) {
-    if (event.button !== 0 || event.pointerType === "touch" || this._intents.pointsThrough || event.shiftKey || otherView(event)) return null;
+    if (
+      event.button !== 0 ||
+      event.pointerType === "touch" ||
+      this._intents.pointsThrough ||
+      event.shiftKey ||
+      otherView(event)
+    )
+      return null;
     return this.grip(pane, pane.local(event));
   }
 
@@ -173,7 +190,8 @@ export class Pointer {
     event.preventDefault();
     if (event.pointerType === "touch") return; // a long press, which is timed
     const controlClick = event.ctrlKey && event.button === 0; // how a Mac asks for a menu: it is a click of ours
-    if (pane.transform && !controlClick && !event.target.closest("button")) this._intents.moveHere(pane, pane.local(event), event);
+    if (pane.transform && !controlClick && !event.target.closest("button"))
+      this._intents.moveHere(pane, pane.local(event), event);
   }
 
   _onWheel(pane, event) {

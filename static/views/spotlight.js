@@ -26,7 +26,9 @@ export class Spotlight {
     if (!pane.transform) return [];
     return [...this._panes.people().values()].filter(this._concerns).flatMap((one) => {
       const box = pane.view.box(one);
-      return box ? [ringItem(one, pane.transform.toPane(box.xmin, box.ymin), pane.transform.toPane(box.xmax, box.ymax))] : [];
+      return box
+        ? [ringItem(one, pane.transform.toPane(box.xmin, box.ymin), pane.transform.toPane(box.xmax, box.ymax))]
+        : [];
     });
   }
 }
@@ -41,7 +43,10 @@ function ringItem(one, low, high) {
     bounds: { xmin: left - 4, ymin: top - 4, xmax: left + width + 4, ymax: top + height + 4 },
     draw: (ctx) => {
       ctx.setLineDash([]);
-      for (const [colour, line] of [[HALO, 5], [CYAN, 2.5]]) {
+      for (const [colour, line] of [
+        [HALO, 5],
+        [CYAN, 2.5],
+      ]) {
         ctx.strokeStyle = colour;
         ctx.lineWidth = line;
         ctx.beginPath();

@@ -51,7 +51,8 @@ export function clamped(transform, source, pane, limit) {
   const smallest = Math.min(pane.width / source.width, pane.height / source.height);
   if (transform.scale <= smallest) return fit(source, pane);
   const scale = Math.min(transform.scale, limit);
-  const again = scale === transform.scale ? transform : transform.zoomAt(scale / transform.scale, pane.width / 2, pane.height / 2);
+  const again =
+    scale === transform.scale ? transform : transform.zoomAt(scale / transform.scale, pane.width / 2, pane.height / 2);
   return new Transform(
     scale,
     clampOffset(again.left, source.width * scale, pane.width),

@@ -64,7 +64,8 @@ export class Views {
     const hides = this.isShown(pane);
     const last = hides && this.panes.shown.length === 1;
     this.show(pane, !hides);
-    if (hides && !last) this.notices.say(gettext("{view} is hidden – {number} shows it again", { view: pane.view.title, number }));
+    if (hides && !last)
+      this.notices.say(gettext("{view} is hidden – {number} shows it again", { view: pane.view.title, number }));
   }
 
   /** Names of views come from what was remembered, so they may be of another dataset. */

@@ -7,7 +7,11 @@ export class ViewsMenu {
   constructor(views) {
     this._views = views;
     this._rows = [];
-    this.element = element("section", { className: "views-menu", hidden: true, "aria-label": gettext("Views") }, this._build());
+    this.element = element(
+      "section",
+      { className: "views-menu", hidden: true, "aria-label": gettext("Views") },
+      this._build(),
+    );
     this._attach();
     for (const name of ["hiddenViews", "largeView", "tones"]) views.settings.watch(name, () => this._update());
   }
@@ -25,23 +29,59 @@ export class ViewsMenu {
       element(
         "table",
         {},
-        element("thead", {}, element("tr", {}, headings().map((text) => (text ? element("th", { scope: "col" }, text) : element("td", {}))))),
-        element("tbody", {}, this._row(gettext("All cameras"), cameras, null), panes.all.map((pane) => this._row(pane.view.title, [pane], pane))),
+        element(
+          "thead",
+          {},
+          element(
+            "tr",
+            {},
+            headings().map((text) => (text ? element("th", { scope: "col" }, text) : element("td", {}))),
+          ),
+        ),
+        element(
+          "tbody",
+          {},
+          this._row(gettext("All cameras"), cameras, null),
+          panes.all.map((pane) => this._row(pane.view.title, [pane], pane)),
+        ),
       ),
-      element("div", { className: "dialog-buttons" }, this._button(gettext("Show all, alike"), () => this._views.showAll()), this._button(gettext("Close"), () => this.toggle())),
+      element(
+        "div",
+        { className: "dialog-buttons" },
+        this._button(gettext("Show all, alike"), () => this._views.showAll()),
+        this._button(gettext("Close"), () => this.toggle()),
+      ),
     ];
   }
 
   /** @param {object|null} pane null: the row that sets all cameras at once */
   _row(title, panes, pane) {
-    const check = pane && element("input", { type: "checkbox", "aria-label": gettext("Show {view}", { view: title }), onchange: ({ target }) => this._show(pane, target) });
-    const large = pane && element("input", { type: "checkbox", "aria-label": gettext("{view} large", { view: title }), onchange: () => this._views.enlarge(pane) });
+    const check =
+      pane &&
+      element("input", {
+        type: "checkbox",
+        "aria-label": gettext("Show {view}", { view: title }),
+        onchange: ({ target }) => this._show(pane, target),
+      });
+    const large =
+      pane &&
+      element("input", {
+        type: "checkbox",
+        "aria-label": gettext("{view} large", { view: title }),
+        onchange: () => this._views.enlarge(pane),
+      });
     const isPicture = panes.some(({ view }) => view.index !== null);
     const sliders = isPicture ? Object.keys(PLAIN).map((name) => this._slider(name, title, panes)) : [];
-    const reset = isPicture && this._button("↺", () => this._views.setTone(panes, PLAIN), gettext("{view} as it was", { view: title }));
+    const reset =
+      isPicture &&
+      this._button("↺", () => this._views.setTone(panes, PLAIN), gettext("{view} as it was", { view: title }));
     this._rows.push({ pane, panes, check, large, sliders });
     const cells = [check, title, large, ...(isPicture ? [...sliders, reset] : [null, null, null, null])];
-    return element("tr", {}, cells.map((cell) => element("td", {}, cell)));
+    return element(
+      "tr",
+      {},
+      cells.map((cell) => element("td", {}, cell)),
+    );
   }
 
   _slider(name, title, panes) {
@@ -56,7 +96,11 @@ export class ViewsMenu {
   }
 
   _button(text, onclick, name = null) {
-    return element("button", { type: "button", className: "quiet", title: name ?? "", "aria-label": name ?? text, onclick }, text);
+    return element(
+      "button",
+      { type: "button", className: "quiet", title: name ?? "", "aria-label": name ?? text, onclick },
+      text,
+    );
   }
 
   /** The last view stays, whatever was clicked. */
@@ -88,7 +132,15 @@ export class ViewsMenu {
 }
 
 function headings() {
-  return [gettext("Shown"), gettext("View"), gettext("Large"), gettext("Brightness"), gettext("Contrast"), gettext("Gamma"), ""];
+  return [
+    gettext("Shown"),
+    gettext("View"),
+    gettext("Large"),
+    gettext("Brightness"),
+    gettext("Contrast"),
+    gettext("Gamma"),
+    "",
+  ];
 }
 
 function toneWords(name) {

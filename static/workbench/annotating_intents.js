@@ -7,7 +7,15 @@ export class AnnotatingIntents extends Intents {
   /** @param {{enlarge: (pane: object) => void}} parts `enlarge` makes a view large, or all alike again */
   constructor({ store, history, heads, ghost, moving, dragging, enlarge }) {
     super();
-    Object.assign(this, { _store: store, _history: history, _heads: heads, _ghost: ghost, _moving: moving, _dragging: dragging, _enlarge: enlarge });
+    Object.assign(this, {
+      _store: store,
+      _history: history,
+      _heads: heads,
+      _ghost: ghost,
+      _moving: moving,
+      _dragging: dragging,
+      _enlarge: enlarge,
+    });
     this._placed = null; // by the last click: {pane, time, selection before}
   }
 

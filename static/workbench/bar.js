@@ -1,9 +1,9 @@
-import { carriedOf } from "../truth/annotation.js";
 import { element, setText } from "../base/dom.js";
-import { titleFor } from "./keys/keys.js";
 import { gettext, ngettext } from "../base/messages.js";
-import { saveWords } from "../saving/save_words.js";
 import { paintSoon } from "../base/repaint.js";
+import { saveWords } from "../saving/save_words.js";
+import { carriedOf } from "../truth/annotation.js";
+import { titleFor } from "./keys/keys.js";
 
 const THEME_KEY = "gtm-theme"; // shared with the ordinary pages
 
@@ -31,12 +31,19 @@ export class Bar {
     this._mode = element("span", { className: "mode" });
     this._saved = element("span", { className: "save-words", role: "status" });
     this._link = element("a", { href: signIn, target: "_blank", rel: "noopener", hidden: true });
-    this._toggles = ["round", "zoom", "outline", "directions"].map((id) => this._button(id, toggleText(id), { "aria-pressed": "false" }));
+    this._toggles = ["round", "zoom", "outline", "directions"].map((id) =>
+      this._button(id, toggleText(id), { "aria-pressed": "false" }),
+    );
     return element(
       "header",
       { className: "bar" },
       element("h1", { className: "visually-hidden" }, gettext("Workbench")),
-      element("a", { className: "home", href: home, title: gettext("Back") }, "‹ ", this.scene.assignment?.batch ?? this.scene.layer?.name ?? this.scene.dataset.name),
+      element(
+        "a",
+        { className: "home", href: home, title: gettext("Back") },
+        "‹ ",
+        this.scene.assignment?.batch ?? this.scene.layer?.name ?? this.scene.dataset.name,
+      ),
       this._button("previousFrame", "◀", { "aria-label": gettext("Previous frame") }),
       this._place,
       this._button("nextFrame", "▶", { "aria-label": gettext("Next frame") }),
@@ -48,7 +55,17 @@ export class Bar {
       this._button("redo", "↷", { "aria-label": gettext("Redo") }),
       ...this._toggles,
       this._button("views", gettext("Views")),
-      element("button", { type: "button", className: "quiet", title: gettext("Dark or light"), "aria-label": gettext("Dark or light"), onclick: toggleTheme }, "◐"),
+      element(
+        "button",
+        {
+          type: "button",
+          className: "quiet",
+          title: gettext("Dark or light"),
+          "aria-label": gettext("Dark or light"),
+          onclick: toggleTheme,
+        },
+        "◐",
+      ),
       this._button("settings", "⚙", { "aria-label": gettext("Settings") }),
       this._button("help", "?", { "aria-label": gettext("Keys and mouse") }),
     );
@@ -86,7 +103,12 @@ export class Bar {
     setText(this._link, link ?? "");
     this._link.hidden = !link;
     this._saved.parentElement.dataset.save = status.kind;
-    const on = { round: this.panes.closeUp, zoom: this.panes.zoomed, outline: this.panes.options.outline, directions: this.panes.options.directions };
+    const on = {
+      round: this.panes.closeUp,
+      zoom: this.panes.zoomed,
+      outline: this.panes.options.outline,
+      directions: this.panes.options.directions,
+    };
     for (const button of this._toggles) button.setAttribute("aria-pressed", String(Boolean(on[button.dataset.action])));
   }
 
@@ -99,7 +121,12 @@ export class Bar {
 }
 
 function toggleText(id) {
-  return { round: gettext("One by one"), zoom: gettext("Zoom"), outline: gettext("Area"), directions: gettext("Arrows") }[id];
+  return {
+    round: gettext("One by one"),
+    zoom: gettext("Zoom"),
+    outline: gettext("Area"),
+    directions: gettext("Arrows"),
+  }[id];
 }
 
 function toggleTheme() {

@@ -1,7 +1,7 @@
-import { carriedOf } from "../truth/annotation.js";
 import { element } from "../base/dom.js";
-import { keyFor } from "./keys/keys.js";
 import { gettext } from "../base/messages.js";
+import { carriedOf } from "../truth/annotation.js";
+import { keyFor } from "./keys/keys.js";
 
 const SHOWN = 20_000; // ms
 
@@ -10,7 +10,11 @@ export class Hints {
   constructor({ store, panes, settings }) {
     Object.assign(this, { _store: store, _settings: settings, _timer: null });
     this._text = element("p", {});
-    const close = element("button", { type: "button", className: "quiet", "aria-label": gettext("Close this hint"), onclick: () => this._hide() }, "✕");
+    const close = element(
+      "button",
+      { type: "button", className: "quiet", "aria-label": gettext("Close this hint"), onclick: () => this._hide() },
+      "✕",
+    );
     this._box = element("div", { className: "hint", hidden: true }, this._text, close);
     this.element = element("div", { role: "status" }, this._box);
     store.on("selection", ({ after }) => after !== null && this._give("moving"));
@@ -48,17 +52,26 @@ export class Hints {
 function words(id) {
   return {
     moving: () =>
-      gettext("Arrow keys move the person by one position, {far} by ten. {zoom} shows the person large in all views, {help} all keys.", {
-        far: keyFor("leftFar"),
-        zoom: keyFor("zoom"),
-        help: keyFor("help"),
-      }),
+      gettext(
+        "Arrow keys move the person by one position, {far} by ten. {zoom} shows the person large in all views, {help} all keys.",
+        {
+          far: keyFor("leftFar"),
+          zoom: keyFor("zoom"),
+          help: keyFor("help"),
+        },
+      ),
     yellow: () =>
-      gettext("Yellow people were carried over and wait to be looked at: {next} goes to the next one, {validate} says that it stands right.", {
-        next: keyFor("nextCarried"),
-        validate: keyFor("validate"),
-      }),
+      gettext(
+        "Yellow people were carried over and wait to be looked at: {next} goes to the next one, {validate} says that it stands right.",
+        {
+          next: keyFor("nextCarried"),
+          validate: keyFor("validate"),
+        },
+      ),
     zooming: () =>
-      gettext("Drag moves the zoomed picture, a double click makes the view large, {views} sets brightness and contrast.", { views: keyFor("views") }),
+      gettext(
+        "Drag moves the zoomed picture, a double click makes the view large, {views} sets brightness and contrast.",
+        { views: keyFor("views") },
+      ),
   }[id]();
 }

@@ -9,8 +9,22 @@ export class KeyActions {
    *          setControls: (on: boolean) => void}} parts the pointer's place and meaning are for keys that do what a click does
    */
   constructor({ store, saver, settings, panes, notices, walk, guard, heads, dragging, intents, pointer, setControls }) {
-    Object.assign(this, { _store: store, _saver: saver, _settings: settings, _panes: panes, _notices: notices, _walk: walk });
-    Object.assign(this, { _guard: guard, _heads: heads, _dragging: dragging, _intents: intents, _pointer: pointer, _setControls: setControls });
+    Object.assign(this, {
+      _store: store,
+      _saver: saver,
+      _settings: settings,
+      _panes: panes,
+      _notices: notices,
+      _walk: walk,
+    });
+    Object.assign(this, {
+      _guard: guard,
+      _heads: heads,
+      _dragging: dragging,
+      _intents: intents,
+      _pointer: pointer,
+      _setControls: setControls,
+    });
     this._help = fetchedDialog(notices, import.meta.resolve("./keys/help.js"));
     this._settingsDialog = fetchedDialog(notices, import.meta.resolve("./settings_dialog.js"));
   }

@@ -4,8 +4,8 @@ import { failureWords } from "../base/failure_words.js";
 import { fetchParts } from "../base/lazy.js";
 import { gettext } from "../base/messages.js";
 import { openSession } from "../saving/session.js";
-import { started } from "./start.js";
 import { fetchTables } from "../tables/tables.js";
+import { started } from "./start.js";
 import { buildWorkbench } from "./workbench.js";
 
 const { mode, home } = document.body.dataset;
@@ -33,7 +33,11 @@ try {
       element("h1", {}, gettext("The workbench could not start")),
       element("p", {}, reason(error)),
       element("p", {}, gettext("Nothing is lost: edits are kept on this computer until the server has them.")),
-      element("button", { type: "button", className: "main", onclick: () => window.location.reload() }, gettext("Try again")),
+      element(
+        "button",
+        { type: "button", className: "main", onclick: () => window.location.reload() },
+        gettext("Try again"),
+      ),
       element("a", { href: home }, gettext("Back")),
     ),
   );

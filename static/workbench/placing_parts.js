@@ -1,13 +1,13 @@
+import { Held } from "./keys/key_repeat.js";
+import { Tour } from "./people/queue.js";
 import { Arrows, directionItems } from "./placing/directions.js";
 import { Dragging } from "./placing/dragging.js";
 import { Ghost } from "./placing/ghost.js";
 import { Guard } from "./placing/guard.js";
 import { Heads } from "./placing/heads.js";
-import { Held } from "./keys/key_repeat.js";
 import { Moving } from "./placing/moving.js";
 import { Sightings } from "./placing/multi_view_click.js";
 import { Sizes } from "./placing/sizes.js";
-import { Tour } from "./people/queue.js";
 
 /** Whatever places people, moves them and makes them larger, each with what it needs. */
 export function placingParts({ scene, store, history, saver, loader }, { settings, panes, notices }) {

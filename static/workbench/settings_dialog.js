@@ -6,9 +6,18 @@ import { settingGroups } from "./settings.js";
 /** Made from the table of settings; every change counts at once, so there is nothing to confirm. */
 export function showSettings(settings) {
   const fields = settingGroups().map(({ title, rows }) =>
-    element("fieldset", { className: "settings-group" }, element("legend", {}, title), rows.map((row) => field(settings, row))),
+    element(
+      "fieldset",
+      { className: "settings-group" },
+      element("legend", {}, title),
+      rows.map((row) => field(settings, row)),
+    ),
   );
-  const reset = element("button", { type: "button", onclick: () => resetAll(settings, fields) }, gettext("As it was at first"));
+  const reset = element(
+    "button",
+    { type: "button", onclick: () => resetAll(settings, fields) },
+    gettext("As it was at first"),
+  );
   const close = element("button", { className: "main", autofocus: true }, gettext("Close"));
   const dialog = openDialog({ title: gettext("Settings"), body: fields });
   dialog.querySelector("form").append(element("div", { className: "dialog-buttons" }, close, reset));
@@ -40,7 +49,16 @@ function controlOf(settings, { name, choices, range }) {
     );
   }
   if (range) {
-    return element("input", { type: "range", ...range, value, oninput: ({ target }) => settings.set(name, target.valueAsNumber) });
+    return element("input", {
+      type: "range",
+      ...range,
+      value,
+      oninput: ({ target }) => settings.set(name, target.valueAsNumber),
+    });
   }
-  return element("input", { type: "checkbox", checked: value, onchange: ({ target }) => settings.set(name, target.checked) });
+  return element("input", {
+    type: "checkbox",
+    checked: value,
+    onchange: ({ target }) => settings.set(name, target.checked),
+  });
 }

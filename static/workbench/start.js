@@ -1,6 +1,6 @@
 import { Api } from "../base/api.js";
-import { Images } from "../views/images.js";
 import { useCatalog } from "../base/messages.js";
+import { Images } from "../views/images.js";
 
 /**
  * What takes longest is asked for first: this module is small, and the scene and the first pictures are on their

@@ -1,33 +1,33 @@
+import { element } from "../base/dom.js";
+import { fetched, fetchedDialog } from "../base/lazy.js";
+import { gettext } from "../base/messages.js";
+import { Notices } from "../base/notices.js";
+import { mapColours, startOptions } from "../views/display.js";
+import { Layout } from "../views/layout.js";
+import { Panes } from "../views/panes.js";
+import { Paths } from "../views/paths.js";
+import { Pointer } from "../views/pointer.js";
+import { Views } from "../views/views.js";
 import { Actions } from "./actions.js";
 import { AnnotatingIntents } from "./annotating_intents.js";
 import { Bar } from "./bar.js";
-import { mapColours, startOptions } from "../views/display.js";
-import { element } from "../base/dom.js";
-import { fetched, fetchedDialog } from "../base/lazy.js";
+import { Walk } from "./frames/navigation.js";
+import { Playback } from "./frames/playback.js";
+import { TimeActions } from "./frames/time_actions.js";
+import { Timeline } from "./frames/timeline.js";
+import { UndoActions } from "./frames/undo_actions.js";
 import { Hints } from "./hints.js";
-import { IdentityActions } from "./people/identity_actions.js";
 import { KeyActions } from "./key_actions.js";
 import { nameKeys } from "./keys/key_titles.js";
 import { Keyboard } from "./keys/keyboard.js";
 import { useKeys } from "./keys/keys.js";
-import { Layout } from "../views/layout.js";
-import { gettext } from "../base/messages.js";
-import { Notices } from "../base/notices.js";
+import { IdentityActions } from "./people/identity_actions.js";
+import { Round } from "./people/one_by_one.js";
 import { panelTools } from "./people/panel_tools.js";
-import { Panes } from "../views/panes.js";
-import { Paths } from "../views/paths.js";
 import { PeopleActions } from "./people/people_actions.js";
 import { PeoplePanel } from "./people/people_panel.js";
 import { placingParts } from "./placing_parts.js";
-import { Playback } from "./frames/playback.js";
-import { Pointer } from "../views/pointer.js";
-import { Round } from "./people/one_by_one.js";
 import { DISPLAYED, Settings } from "./settings.js";
-import { TimeActions } from "./frames/time_actions.js";
-import { Timeline } from "./frames/timeline.js";
-import { UndoActions } from "./frames/undo_actions.js";
-import { Views } from "../views/views.js";
-import { Walk } from "./frames/navigation.js";
 import { WarningActions } from "./warnings/warning_actions.js";
 import { warningItems } from "./warnings/warning_marks.js";
 import { Warnings } from "./warnings/warnings.js";
@@ -70,7 +70,14 @@ export async function buildWorkbench(root, session, { mode, home }) {
   const layout = new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
   const views = new Views({ panes, layout, settings, notices });
   const identity = new IdentityActions({ ...session, panes, notices, guard });
-  fillTable(actions, session, page, { ...placing, select, playback, identity, views, setControls: connectKeyboard(bar, perform, settings) });
+  fillTable(actions, session, page, {
+    ...placing,
+    select,
+    playback,
+    identity,
+    views,
+    setControls: connectKeyboard(bar, perform, settings),
+  });
   actions.use(chooseViews(root, views, page));
   new Paths(panes, settings);
   showFilmstrip(timeline, notices, { ...session, walk, panes, settings });
@@ -83,7 +90,11 @@ export async function buildWorkbench(root, session, { mode, home }) {
 /** What the tutorial does without: buttons about the person, warnings, hints, the frame's history. */
 function addForWork(panel, session, page, { actions, perform, identity, heads, guard }) {
   const list = warn(session, { ...page, actions, identity });
-  panel.element.append(panelTools(session.store, perform, heads), list, new Hints({ ...page, store: session.store }).element);
+  panel.element.append(
+    panelTools(session.store, perform, heads),
+    list,
+    new Hints({ ...page, store: session.store }).element,
+  );
   actions.use(frameHistory(panel, { ...session, ...page, guard }));
 }
 
@@ -167,7 +178,8 @@ function warn(session, { settings, panes, notices, walk, actions, identity }) {
   actions.use(acting.table());
   panes.addExtra((pane) => warningItems(warnings, panes, pane));
   warnings.on("change", () => panes.markPeople());
-  return new WarningsPanel({ store, warnings, settings, go: (one) => acting.go(one), join: (one) => acting.join(one) }).element;
+  return new WarningsPanel({ store, warnings, settings, go: (one) => acting.go(one), join: (one) => acting.join(one) })
+    .element;
 }
 
 /** Things that happen outside the page's own controls. */

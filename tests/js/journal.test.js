@@ -29,10 +29,16 @@ test("an edit is written without a pause after the write before it, with all tha
   edit();
   edit();
   await settled();
-  assert.deepEqual(writes.map(({ value }) => value.edits), [1]);
+  assert.deepEqual(
+    writes.map(({ value }) => value.edits),
+    [1],
+  );
   writes[0].give();
   await settled();
-  assert.deepEqual(writes.map(({ value }) => value.edits), [1, 3]);
+  assert.deepEqual(
+    writes.map(({ value }) => value.edits),
+    [1, 3],
+  );
 });
 
 test("a record of another tab goes with the write that stands for it", async () => {
@@ -45,7 +51,10 @@ test("a record of another tab goes with the write that stands for it", async () 
   writes[0].give();
   journal.clear(0);
   await settled();
-  assert.deepEqual(writes[1].keys, [["layer", "mine", 0], ["layer", "crashed", 0]]);
+  assert.deepEqual(writes[1].keys, [
+    ["layer", "mine", 0],
+    ["layer", "crashed", 0],
+  ]);
 });
 
 test("a record of another tab stays while what stands for it could not be written", async () => {

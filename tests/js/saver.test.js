@@ -25,7 +25,16 @@ test("an edit kept before its first send goes on from the revision it was made o
 
 function withoutRevision(ours, more = {}) {
   const flags = { done: false, nobody: false };
-  return { frame: 0, base: { annotations: [row(1, 10)], ...flags }, ours: { annotations: ours, ...flags }, sending: null, question: null, edits: 1, at: 0, ...more };
+  return {
+    frame: 0,
+    base: { annotations: [row(1, 10)], ...flags },
+    ours: { annotations: ours, ...flags },
+    sending: null,
+    question: null,
+    edits: 1,
+    at: 0,
+    ...more,
+  };
 }
 
 test("an edit kept without a revision is put onto what the server has", async () => {
@@ -40,12 +49,22 @@ test("an edit kept without a revision is put onto what the server has", async ()
 test("an edit kept without a revision of somebody the server has moved is asked about", async () => {
   const { saver } = saving({ frames: [state(0, 4, [row(1, 15)])] });
   saver.adopt(withoutRevision([row(1, 11)]));
-  assert.deepEqual(saver.conflicts()[0].conflicts.map(({ person }) => person), [1]);
+  assert.deepEqual(
+    saver.conflicts()[0].conflicts.map(({ person }) => person),
+    [1],
+  );
 });
 
 test("a save that was begun without a revision is made anew", async () => {
   const { saver, saves } = saving({ frames: [state(0, 4, [row(1, 10)])] });
-  const body = { save_id: "old", revision: undefined, annotations: [row(1, 11)], done: false, nobody: false, seconds: 3 };
+  const body = {
+    save_id: "old",
+    revision: undefined,
+    annotations: [row(1, 11)],
+    done: false,
+    nobody: false,
+    seconds: 3,
+  };
   saver.adopt(withoutRevision([row(1, 11)], { sending: { saveId: "old", body } }));
   await pass(1000);
   assert.equal(saves.length, 1);
@@ -84,7 +103,10 @@ test("a flush puts together what was saved elsewhere and sends it", async () => 
   const { saver, move, saves } = saving({ answers: [refusedWith(412, "stale", { current })] });
   move(1, 11);
   assert.equal(await saver.flush(), true);
-  assert.deepEqual(saves[1].body.annotations.map(({ position }) => position), [11, 20]);
+  assert.deepEqual(
+    saves[1].body.annotations.map(({ position }) => position),
+    [11, 20],
+  );
 });
 
 test("a flush without network answers that not all is saved", async () => {
@@ -194,7 +216,10 @@ test("active seconds of a save that is sent again count once", async () => {
   work(5);
   move(1, 12);
   await pass(5000);
-  assert.deepEqual(saves.map(({ body }) => body.seconds), [20, 20, 5]);
+  assert.deepEqual(
+    saves.map(({ body }) => body.seconds),
+    [20, 20, 5],
+  );
 });
 
 test("active seconds survive the page that counted them", async () => {
@@ -233,9 +258,15 @@ test("after a reload a person added here keeps its number in all frames when ano
   before.move(5, 51, 1);
   before.move(5, 50, 0);
   const current = state(0, 2, [row(5, 77)]);
-  const after = saving({ frames: [frames[0], state(1, 2, [row(5, 50)])], answers: [(frame, body) => (frame === 0 ? refusedWith(412, "stale", { current })() : taken(frame, body))] });
+  const after = saving({
+    frames: [frames[0], state(1, 2, [row(5, 50)])],
+    answers: [(frame, body) => (frame === 0 ? refusedWith(412, "stale", { current })() : taken(frame, body))],
+  });
   after.saver.adopt(before.journal.records.get(0));
   after.saver.adopt(before.journal.records.get(1));
   await pass(3000);
-  assert.deepEqual([after.place(5, 0), after.place(100, 0), after.place(5, 1), after.place(100, 1)], [77, 50, undefined, 51]);
+  assert.deepEqual(
+    [after.place(5, 0), after.place(100, 0), after.place(5, 1), after.place(100, 1)],
+    [77, 50, undefined, 51],
+  );
 });

@@ -1,10 +1,10 @@
 import { ask } from "../../base/dialogs.js";
 import { element } from "../../base/dom.js";
-import { extendEdits, fillEdits, keyframes } from "../../truth/keyframes.js";
-import { keyFor } from "../keys/keys.js";
-import { LOOKS } from "../../views/styles.js";
 import { gettext, ngettext } from "../../base/messages.js";
+import { extendEdits, fillEdits, keyframes } from "../../truth/keyframes.js";
 import { pathMap } from "../../views/path_map.js";
+import { LOOKS } from "../../views/styles.js";
+import { keyFor } from "../keys/keys.js";
 
 /**
  * Shows what can be filled in, before anything is.
@@ -47,7 +47,12 @@ function offersFor(store, scene, person) {
   const further = person === null ? [] : extendEdits(store, scene, person);
   return [
     { id: "between", edits: own, label: ngettext("Fill {n} frame", "Fill {n} frames", own.length) },
-    { id: "further", edits: [...own, ...further], label: gettext("Fill all frames of the batch"), skip: !further.length },
+    {
+      id: "further",
+      edits: [...own, ...further],
+      label: gettext("Fill all frames of the batch"),
+      skip: !further.length,
+    },
     { id: "all", edits: all, label: gettext("Fill in everybody between keyframes"), skip: all.length === own.length },
   ].filter(({ edits, skip }) => edits.length && !skip);
 }
@@ -56,21 +61,44 @@ function describe(store, { id, edits }) {
   const numbers = [...new Set(edits.map(({ frame }) => frame))].sort((one, other) => one - other);
   const places = numbers.map((number) => store.numbers.indexOf(number) + 1).join(", ");
   const sentence = {
-    between: () => ngettext("On the straight line between the keyframes: frame {places}.", "On the straight line between the keyframes: frames {places}.", numbers.length, { places }),
-    further: () => ngettext("Further on, the way the person walks, as far as the batch goes: frame {places}.", "Further on, the way the person walks, as far as the batch goes: frames {places}.", numbers.length, { places }),
+    between: () =>
+      ngettext(
+        "On the straight line between the keyframes: frame {places}.",
+        "On the straight line between the keyframes: frames {places}.",
+        numbers.length,
+        { places },
+      ),
+    further: () =>
+      ngettext(
+        "Further on, the way the person walks, as far as the batch goes: frame {places}.",
+        "Further on, the way the person walks, as far as the batch goes: frames {places}.",
+        numbers.length,
+        { places },
+      ),
     all: () =>
-      ngettext("Everybody between keyframes: {n} box in the frames {places}.", "Everybody between keyframes: {n} boxes in the frames {places}.", edits.length, { places }),
+      ngettext(
+        "Everybody between keyframes: {n} box in the frames {places}.",
+        "Everybody between keyframes: {n} boxes in the frames {places}.",
+        edits.length,
+        { places },
+      ),
   }[id]();
   const finished = numbers.filter((number) => store.frame(number).done).length;
   if (!finished) return element("p", { "data-offer": id }, sentence);
-  const again = ngettext("{n} of them is done now and will have to be looked at again.", "{n} of them are done now and will have to be looked at again.", finished);
+  const again = ngettext(
+    "{n} of them is done now and will have to be looked at again.",
+    "{n} of them are done now and will have to be looked at again.",
+    finished,
+  );
   return element("p", { "data-offer": id }, `${sentence} ${again}`);
 }
 
 function previewMap(store, scene, mapColours, edits) {
   const people = [...new Set(edits.map(({ person }) => person))];
   const paths = people.flatMap((person) => {
-    const filled = new Map(edits.filter((edit) => edit.person === person).map(({ frame, after }) => [frame, after.position]));
+    const filled = new Map(
+      edits.filter((edit) => edit.person === person).map(({ frame, after }) => [frame, after.position]),
+    );
     const kept = keyframes(store, person).map((number) => [number, store.person(person, number).position]);
     const whole = [...filled, ...kept].sort(([one], [other]) => one - other).map(([, position]) => position);
     return [

@@ -1,11 +1,11 @@
-import { predictPeople } from "../../truth/propagation.js";
-import { paintCrop } from "../../views/crop_paint.js";
-import { bestViews } from "../../views/crops.js";
 import { element, setText } from "../../base/dom.js";
-import { between } from "../../truth/keyframes.js";
 import { gettext } from "../../base/messages.js";
 import { paintSoon } from "../../base/repaint.js";
 import { unit } from "../../base/scale.js";
+import { between } from "../../truth/keyframes.js";
+import { predictPeople } from "../../truth/propagation.js";
+import { paintCrop } from "../../views/crop_paint.js";
+import { bestViews } from "../../views/crops.js";
 
 const VIEWS = 3; // crops per frame
 const REACH = 5; // frames on each side of the open one, where all do not fit
@@ -24,7 +24,13 @@ export class Filmstrip {
     this._canvas = element("canvas", {});
     this._buttons = element("div", { className: "filmstrip-frames" });
     this._note = element("p", { className: "filmstrip-note" });
-    this.element = element("section", { className: "filmstrip", "aria-label": gettext("The selected person over the frames") }, this._canvas, this._buttons, this._note);
+    this.element = element(
+      "section",
+      { className: "filmstrip", "aria-label": gettext("The selected person over the frames") },
+      this._canvas,
+      this._buttons,
+      this._note,
+    );
     this._observer = new ResizeObserver(() => this._resize());
     this._observer.observe(this._canvas);
     for (const event of ["change", "selection", "frame"]) store.on(event, () => this._later());
@@ -100,7 +106,9 @@ export class Filmstrip {
   _expected(person, number) {
     const { store, scene } = this;
     const distance = (one) => Math.abs(one - number);
-    const known = store.numbers.filter((one) => store.person(person, one)).sort((one, other) => distance(one) - distance(other));
+    const known = store.numbers
+      .filter((one) => store.person(person, one))
+      .sort((one, other) => distance(one) - distance(other));
     const sources = known
       .filter((one) => one > number === known[0] > number)
       .map((one) => ({ time: scene.seconds(one), people: new Map([[person, store.person(person, one)]]) }));
@@ -124,7 +132,12 @@ export class Filmstrip {
   _button(person, number, views) {
     const place = this.store.numbers.indexOf(number) + 1;
     const label = gettext("Person {person} in frame {place}", { person, place });
-    return element("button", { type: "button", "aria-label": label, title: label, onclick: (event) => this._go(event, person, number, views) });
+    return element("button", {
+      type: "button",
+      "aria-label": label,
+      title: label,
+      onclick: (event) => this._go(event, person, number, views),
+    });
   }
 
   /** A click in a crop also makes its view the active one. */

@@ -1,9 +1,9 @@
-import { carriedOf } from "../../truth/annotation.js";
 import { ApiError } from "../../base/api.js";
 import { ask } from "../../base/dialogs.js";
 import { element } from "../../base/dom.js";
 import { failureWords } from "../../base/failure_words.js";
 import { gettext, ngettext } from "../../base/messages.js";
+import { carriedOf } from "../../truth/annotation.js";
 
 /** What there is to say about every frame of a batch before it is handed in. */
 export function summary(store) {
@@ -18,7 +18,11 @@ export async function finishAssignment({ store, saver, api, walk, notices, home 
   const saved = await saver.flush();
   const rows = summary(store);
   const unfinished = rows.filter(({ done }) => !done);
-  const waiting = element("p", { role: "status", hidden: saved }, saved ? "" : gettext("Some edits are not saved yet; wait until “All saved” is shown."));
+  const waiting = element(
+    "p",
+    { role: "status", hidden: saved },
+    saved ? "" : gettext("Some edits are not saved yet; wait until “All saved” is shown."),
+  );
   const answered = ask({
     title: unfinished.length
       ? ngettext("{n} frame is not finished yet", "{n} frames are not finished yet", unfinished.length)
@@ -57,13 +61,25 @@ function table(rows) {
   return element(
     "table",
     { className: "summary" },
-    element("thead", {}, element("tr", {}, head.map((text) => element("th", { scope: "col" }, text)))),
+    element(
+      "thead",
+      {},
+      element(
+        "tr",
+        {},
+        head.map((text) => element("th", { scope: "col" }, text)),
+      ),
+    ),
     element("tbody", {}, rows.map(tableRow)),
   );
 }
 
 function tableRow({ number, place, people, carried, done }) {
-  const state = done ? gettext("done") : carried ? ngettext("{n} yellow", "{n} yellow", carried) : gettext("not finished");
+  const state = done
+    ? gettext("done")
+    : carried
+      ? ngettext("{n} yellow", "{n} yellow", carried)
+      : gettext("not finished");
   const go = (event) => event.target.closest("dialog").close(`frame ${number}`);
   return element(
     "tr",

@@ -1,11 +1,11 @@
-import { byPerson } from "../../truth/annotation.js";
-import * as commands from "../../truth/commands.js";
 import { element, setText } from "../../base/dom.js";
 import { failureWords } from "../../base/failure_words.js";
-import { keyFor } from "../keys/keys.js";
-import { LOOKS } from "../../views/styles.js";
-import { same } from "../../truth/merge.js";
 import { gettext, ngettext } from "../../base/messages.js";
+import { byPerson } from "../../truth/annotation.js";
+import * as commands from "../../truth/commands.js";
+import { same } from "../../truth/merge.js";
+import { LOOKS } from "../../views/styles.js";
+import { keyFor } from "../keys/keys.js";
 
 /**
  * Who saved the open frame, and when: a list beside the views. The chosen save is drawn in the views as ghosts
@@ -16,14 +16,27 @@ export class FrameHistory {
     Object.assign(this, { api, store, saver, history, panes, notices, guard });
     this._shown = null; // {revision, people, done, nobody} drawn as ghosts
     this._asked = 0; // only the newest answer counts
-    this._list = element("div", { className: "revisions", role: "radiogroup", "aria-label": gettext("Saves of this frame") });
+    this._list = element("div", {
+      className: "revisions",
+      role: "radiogroup",
+      "aria-label": gettext("Saves of this frame"),
+    });
     this._words = element("p", { className: "revision-words", role: "status" });
-    this._restore = element("button", { type: "button", className: "main", disabled: true, onclick: () => this.restore() }, gettext("Restore this"));
+    this._restore = element(
+      "button",
+      { type: "button", className: "main", disabled: true, onclick: () => this.restore() },
+      gettext("Restore this"),
+    );
     const close = element("button", { type: "button", onclick: () => this.close() }, gettext("Close"));
     this._title = element("h2", {});
     this.element = element(
       "section",
-      { className: "frame-history", hidden: true, "aria-label": gettext("History of the frame"), onkeydown: (event) => this._onKey(event) },
+      {
+        className: "frame-history",
+        hidden: true,
+        "aria-label": gettext("History of the frame"),
+        onkeydown: (event) => this._onKey(event),
+      },
       this._title,
       this._list,
       this._words,
@@ -55,7 +68,10 @@ export class FrameHistory {
       return (await this.api.history(number)).revisions;
     });
     if (!revisions || asked !== this._asked) return;
-    setText(this._words, revisions.length ? gettext("Choose a save to see it in the views.") : gettext("This frame was never saved."));
+    setText(
+      this._words,
+      revisions.length ? gettext("Choose a save to see it in the views.") : gettext("This frame was never saved."),
+    );
     this._list.replaceChildren(...revisions.reverse().map((one, index) => this._row(number, one, index === 0)));
   }
 
@@ -70,11 +86,19 @@ export class FrameHistory {
     if (!this._shown || this.guard.refused()) return;
     const { revision, ...state } = this._shown;
     const number = this.store.current;
-    const label = gettext("restore save {revision} of frame {place}", { revision, place: this.store.numbers.indexOf(number) + 1 });
+    const label = gettext("restore save {revision} of frame {place}", {
+      revision,
+      place: this.store.numbers.indexOf(number) + 1,
+    });
     const patch = commands.restore(this.store, number, state, label);
     if (!patch.edits.length) return this.notices.say(gettext("The frame is like that already"));
     this.history.run(patch);
-    this.notices.say(gettext("Restored as it was in save {revision} – {key} takes it back, and every save stays", { revision, key: keyFor("undo") }));
+    this.notices.say(
+      gettext("Restored as it was in save {revision} – {key} takes it back, and every save stays", {
+        revision,
+        key: keyFor("undo"),
+      }),
+    );
     this.open();
   }
 
@@ -122,11 +146,23 @@ export class FrameHistory {
     const then = this._shown.people;
     const count = (people, test) => [...people.keys()].filter(test).length;
     const parts = [
-      [count(then, (person) => !now.has(person)), (n) => ngettext("{n} person is not there now", "{n} people are not there now", n)],
-      [count(now, (person) => !then.has(person)), (n) => ngettext("{n} person was not there", "{n} people were not there", n)],
-      [count(then, (person) => now.has(person) && !same(now.get(person), then.get(person))), (n) => ngettext("{n} person was different", "{n} people were different", n)],
+      [
+        count(then, (person) => !now.has(person)),
+        (n) => ngettext("{n} person is not there now", "{n} people are not there now", n),
+      ],
+      [
+        count(now, (person) => !then.has(person)),
+        (n) => ngettext("{n} person was not there", "{n} people were not there", n),
+      ],
+      [
+        count(then, (person) => now.has(person) && !same(now.get(person), then.get(person))),
+        (n) => ngettext("{n} person was different", "{n} people were different", n),
+      ],
     ].filter(([n]) => n > 0);
-    setText(this._words, parts.length ? parts.map(([n, words]) => words(n)).join("; ") : gettext("Everybody stands where they stand now."));
+    setText(
+      this._words,
+      parts.length ? parts.map(([n, words]) => words(n)).join("; ") : gettext("Everybody stands where they stand now."),
+    );
   }
 
   _ghosts(pane) {
@@ -134,7 +170,10 @@ export class FrameHistory {
     const now = this.store.people();
     return [...this._shown.people.values()]
       .filter((one) => !same(one, now.get(one.person)) && pane.view.box(one))
-      .map((one) => ({ ...pane.view.item(one, LOOKS.ghost, pane.transform, this.panes.options), id: `was ${one.person}` }));
+      .map((one) => ({
+        ...pane.view.item(one, LOOKS.ghost, pane.transform, this.panes.options),
+        id: `was ${one.person}`,
+      }));
   }
 
   /** The list is a field, so its keys are its own; Escape goes back to annotating. */

@@ -1,11 +1,11 @@
-import { carriedOf } from "../../truth/annotation.js";
-import { isGuess, predictPeople } from "../../truth/propagation.js";
-import * as commands from "../../truth/commands.js";
 import { ask } from "../../base/dialogs.js";
 import { failureWords } from "../../base/failure_words.js";
+import { gettext, ngettext } from "../../base/messages.js";
+import { carriedOf } from "../../truth/annotation.js";
+import * as commands from "../../truth/commands.js";
 import { between, isFilled } from "../../truth/keyframes.js";
 import { same } from "../../truth/merge.js";
-import { gettext, ngettext } from "../../base/messages.js";
+import { isGuess, predictPeople } from "../../truth/propagation.js";
 import { nearestSide, withFreeNumbers } from "../../truth/sources.js";
 
 const AT_ONCE = 96; // light pictures kept at hand: a batch of ten frames with up to nine views
@@ -92,7 +92,8 @@ export class Walk {
   reload() {
     return this._alone(async () => {
       const number = this.store.current;
-      if (!(await this.saver.flush())) return this.notices.say(gettext("Not loaded: there are edits still to be saved"));
+      if (!(await this.saver.flush()))
+        return this.notices.say(gettext("Not loaded: there are edits still to be saved"));
       await this.loader.load(number, true);
       this.notices.say(gettext("Frame loaded from the server"));
     });
@@ -112,7 +113,9 @@ export class Walk {
     const expected = predictPeople(scene.grid, scene.seconds(number), sources, { except });
     const brought = sources[0].outside
       ? withFreeNumbers(store, expected)
-      : expected.map((one) => between(store, scene, one.person, number) ?? one).filter((one) => this._isNews(number, one));
+      : expected
+          .map((one) => between(store, scene, one.person, number) ?? one)
+          .filter((one) => this._isNews(number, one));
     this._brought.set(number, new Set([...(this._brought.get(number) ?? []), ...expected.map(({ person }) => person)]));
     if (brought.length) this.history.run(commands.bring(store, number, brought));
   }
@@ -162,7 +165,12 @@ export class Walk {
       const answer = await this._askAboutCarried(waiting);
       if (answer === "skip") return true;
       if (answer !== "validate") return false;
-      this.history.run(commands.validate(this.store, waiting.map(({ person }) => person)));
+      this.history.run(
+        commands.validate(
+          this.store,
+          waiting.map(({ person }) => person),
+        ),
+      );
     }
     const empty = this.store.people().size === 0;
     if (empty && !this.store.frame().nobody && !(await this._askNobody())) return false;
@@ -224,6 +232,8 @@ export class Walk {
   }
 
   _sayNotLoaded(error) {
-    this.notices.say(gettext("The frame could not be loaded: {reason}. Please try again", { reason: failureWords(error) }));
+    this.notices.say(
+      gettext("The frame could not be loaded: {reason}. Please try again", { reason: failureWords(error) }),
+    );
   }
 }

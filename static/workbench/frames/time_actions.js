@@ -1,13 +1,13 @@
-import { CARRIED, changed } from "../../truth/annotation.js";
-import { freePosition, predictPeople } from "../../truth/propagation.js";
-import * as commands from "../../truth/commands.js";
 import { ask } from "../../base/dialogs.js";
 import { fetchedDialog } from "../../base/lazy.js";
-import { keyFor } from "../keys/keys.js";
-import { loadMissing } from "../../saving/load_missing.js";
 import { gettext, ngettext } from "../../base/messages.js";
+import { loadMissing } from "../../saving/load_missing.js";
+import { CARRIED, changed } from "../../truth/annotation.js";
+import * as commands from "../../truth/commands.js";
+import { freePosition, predictPeople } from "../../truth/propagation.js";
 import { sourcesOn, withFreeNumbers } from "../../truth/sources.js";
 import { nextTask } from "../../truth/todo.js";
+import { keyFor } from "../keys/keys.js";
 
 const PATHS = ["none", "selected", "all"];
 
@@ -43,9 +43,14 @@ export class TimeActions {
     const sources = await this._sources(direction);
     if (!sources?.length) return sources && this._sayNobody(direction);
     const { store, scene } = this;
-    const missing = predictPeople(scene.grid, scene.seconds(store.current), sources, { except: store.people(), origin: "copied" });
+    const missing = predictPeople(scene.grid, scene.seconds(store.current), sources, {
+      except: store.people(),
+      origin: "copied",
+    });
     if (!missing.length) return this.notices.say(gettext("Everybody of that frame is here already"));
-    this.history.run(commands.bring(store, store.current, sources[0].outside ? withFreeNumbers(store, missing) : missing));
+    this.history.run(
+      commands.bring(store, store.current, sources[0].outside ? withFreeNumbers(store, missing) : missing),
+    );
     this.notices.say(ngettext("{n} person loaded", "{n} people loaded", missing.length));
   }
 
@@ -70,7 +75,8 @@ export class TimeActions {
     const { store, scene, panes } = this;
     const edits = await dialog.chooseFill(store, scene, panes.options.mapColours, store.selection ?? this.walk.held);
     if (edits === null) return;
-    if (!edits.length) return this.notices.say(gettext("Nothing to fill: validate a person in two frames, with frames between them"));
+    if (!edits.length)
+      return this.notices.say(gettext("Nothing to fill: validate a person in two frames, with frames between them"));
     this.history.run(commands.fill(store, edits));
     this.notices.say(ngettext("{n} box filled in", "{n} boxes filled in", edits.length));
   }
@@ -90,15 +96,27 @@ export class TimeActions {
     if (task.person !== null) this.store.select(task.person);
     if (task.kind === "single") {
       this._asked.add(task.person);
-      this.notices.say(gettext("Person {person} is in this frame only – {key} fills in the other frames", { person: task.person, key: keyFor("fill") }));
+      this.notices.say(
+        gettext("Person {person} is in this frame only – {key} fills in the other frames", {
+          person: task.person,
+          key: keyFor("fill"),
+        }),
+      );
     } else if (task.left === "empty") this.notices.say(gettext("Nobody is marked in this frame yet"));
-    else if (task.left === "open") this.notices.say(gettext("Everybody is validated – {key} says the frame is done", { key: keyFor("nextFrame") }));
+    else if (task.left === "open")
+      this.notices.say(gettext("Everybody is validated – {key} says the frame is done", { key: keyFor("nextFrame") }));
   }
 
   cyclePaths(name) {
     const next = PATHS[(PATHS.indexOf(this.settings.get(name)) + 1) % PATHS.length];
     this.settings.set(name, next);
-    this.notices.say({ none: gettext("Paths: none"), selected: gettext("Paths: of the selected person"), all: gettext("Paths: of everybody") }[next]);
+    this.notices.say(
+      {
+        none: gettext("Paths: none"),
+        selected: gettext("Paths: of the selected person"),
+        all: gettext("Paths: of everybody"),
+      }[next],
+    );
   }
 
   /** Null when they could not be loaded. */
@@ -165,6 +183,8 @@ export class TimeActions {
   }
 
   _sayNobody(direction) {
-    this.notices.say(direction < 0 ? gettext("Nobody is marked before this frame") : gettext("Nobody is marked after this frame"));
+    this.notices.say(
+      direction < 0 ? gettext("Nobody is marked before this frame") : gettext("Nobody is marked after this frame"),
+    );
   }
 }

@@ -1,8 +1,8 @@
-import { carriedOf } from "../../truth/annotation.js";
 import { element, setText } from "../../base/dom.js";
-import { titleFor } from "../keys/keys.js";
 import { gettext, ngettext } from "../../base/messages.js";
 import { paintSoon } from "../../base/repaint.js";
+import { carriedOf } from "../../truth/annotation.js";
+import { titleFor } from "../keys/keys.js";
 
 /**
  * All frames in a line: what state each is in, play, and a scrubber to look through them. A frame's mark says it
@@ -29,11 +29,25 @@ export class Timeline {
     this._play.setAttribute("aria-label", gettext("Play"));
     this._frames = element(
       "div",
-      { className: "timeline-frames", role: "slider", tabIndex: 0, "aria-label": gettext("Frames"), "aria-valuemin": "1", "aria-valuemax": String(this.store.numbers.length) },
+      {
+        className: "timeline-frames",
+        role: "slider",
+        tabIndex: 0,
+        "aria-label": gettext("Frames"),
+        "aria-valuemin": "1",
+        "aria-valuemax": String(this.store.numbers.length),
+      },
       this.store.numbers.map((number, index) => this._cell(number, index)),
     );
     this._attach();
-    return element("section", { className: "timeline", "aria-label": gettext("Frames") }, this._play, this._frames, this._button("filmstrip", gettext("Strip"), perform), this._button("nextTask", gettext("What is left"), perform));
+    return element(
+      "section",
+      { className: "timeline", "aria-label": gettext("Frames") },
+      this._play,
+      this._frames,
+      this._button("filmstrip", gettext("Strip"), perform),
+      this._button("nextTask", gettext("What is left"), perform),
+    );
   }
 
   _button(id, text, perform) {
@@ -41,12 +55,21 @@ export class Timeline {
       perform(id);
       if (event.detail > 0) event.currentTarget.blur(); // else Space would press it again
     };
-    return element("button", { type: "button", className: "quiet", "data-action": id, title: titleFor(id), onclick }, text);
+    return element(
+      "button",
+      { type: "button", className: "quiet", "data-action": id, title: titleFor(id), onclick },
+      text,
+    );
   }
 
   _cell(number, index) {
     const mark = element("span", { className: "mark" });
-    const node = element("span", { className: "timeline-frame", "data-number": String(number) }, element("span", { className: "ordinal" }, String(index + 1)), mark);
+    const node = element(
+      "span",
+      { className: "timeline-frame", "data-number": String(number) },
+      element("span", { className: "ordinal" }, String(index + 1)),
+      mark,
+    );
     this._cells.set(number, { node, mark, signature: "" });
     return node;
   }
@@ -86,7 +109,14 @@ export class Timeline {
   _onKey(event) {
     const { numbers } = this.store;
     const index = numbers.indexOf(this.store.current);
-    const wanted = { ArrowLeft: index - 1, ArrowDown: index - 1, ArrowRight: index + 1, ArrowUp: index + 1, Home: 0, End: numbers.length - 1 };
+    const wanted = {
+      ArrowLeft: index - 1,
+      ArrowDown: index - 1,
+      ArrowRight: index + 1,
+      ArrowUp: index + 1,
+      Home: 0,
+      End: numbers.length - 1,
+    };
     if (!(event.key in wanted)) return;
     event.preventDefault();
     const number = numbers[wanted[event.key]];

@@ -1,5 +1,5 @@
-import { loadMissing } from "../../saving/load_missing.js";
 import { gettext } from "../../base/messages.js";
+import { loadMissing } from "../../saving/load_missing.js";
 
 const STEPS = {
   undo: {

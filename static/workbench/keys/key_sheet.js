@@ -1,8 +1,8 @@
 import { element, setText } from "../../base/dom.js";
 import { groupBy } from "../../base/group_by.js";
 import { chord } from "../../base/key_press.js";
-import { clash, groupTitle, keyName, keyTable } from "./keys.js";
 import { gettext } from "../../base/messages.js";
+import { clash, groupTitle, keyName, keyTable } from "./keys.js";
 
 const MODIFIERS = ["Shift", "Control", "Alt", "Meta", "AltGraph"];
 
@@ -13,7 +13,11 @@ export class KeySheet {
     this._waiting = null; // {row, key, button}
     this.message = element("p", { className: "key-message", role: "status" });
     this.element = element("div", { className: "key-groups" });
-    this.reset = element("button", { type: "button", className: "quiet", onclick: () => this._reset() }, gettext("All keys as they were at first"));
+    this.reset = element(
+      "button",
+      { type: "button", className: "quiet", onclick: () => this._reset() },
+      gettext("All keys as they were at first"),
+    );
     this._build();
     this.element.addEventListener("keydown", (event) => this._onKey(event));
     this.element.addEventListener("focusout", () => this._stopWaiting());
@@ -24,7 +28,16 @@ export class KeySheet {
     const groups = groupBy(keyTable(), ({ group }) => group);
     this.element.replaceChildren(
       ...[...groups].map(([group, rows]) =>
-        element("section", {}, element("h3", {}, groupTitle(group)), element("dl", {}, rows.flatMap((row) => this._row(row)))),
+        element(
+          "section",
+          {},
+          element("h3", {}, groupTitle(group)),
+          element(
+            "dl",
+            {},
+            rows.flatMap((row) => this._row(row)),
+          ),
+        ),
       ),
     );
   }
@@ -40,7 +53,14 @@ export class KeySheet {
     const name = key === null ? gettext("no key") : keyName(key);
     return element(
       "button",
-      { type: "button", className: "key", "data-key-of": row.id, title: gettext("Change this key"), "aria-label": gettext("{key}: {what}. Change", { key: name, what: row.label }), onclick: ({ currentTarget }) => this._wait(row, key, currentTarget) },
+      {
+        type: "button",
+        className: "key",
+        "data-key-of": row.id,
+        title: gettext("Change this key"),
+        "aria-label": gettext("{key}: {what}. Change", { key: name, what: row.label }),
+        onclick: ({ currentTarget }) => this._wait(row, key, currentTarget),
+      },
       element("kbd", {}, name),
     );
   }
@@ -73,10 +93,17 @@ export class KeySheet {
   _take(pressed) {
     const { row, key } = this._waiting;
     const other = clash(row.id, pressed);
-    if (other) return setText(this.message, gettext("{key} means already: {what}. Press another key, or Esc", { key: keyName(pressed), what: other.label }));
+    if (other)
+      return setText(
+        this.message,
+        gettext("{key} means already: {what}. Press another key, or Esc", { key: keyName(pressed), what: other.label }),
+      );
     const kept = row.keys.map((one) => (one === key ? pressed : one));
     this._stopWaiting();
-    this._settings.set("keys", { ...this._settings.get("keys"), [row.id]: [...new Set(kept.length ? kept : [pressed])] });
+    this._settings.set("keys", {
+      ...this._settings.get("keys"),
+      [row.id]: [...new Set(kept.length ? kept : [pressed])],
+    });
     this._build();
     this.element.querySelector(`[data-key-of="${row.id}"]`).focus();
     setText(this.message, gettext("{key} now means: {what}", { key: keyName(pressed), what: row.label }));

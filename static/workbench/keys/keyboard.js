@@ -1,5 +1,5 @@
-import { dialogArrives } from "../../base/lazy.js";
 import { chord, tellsForeign } from "../../base/key_press.js";
+import { dialogArrives } from "../../base/lazy.js";
 import { keyTable } from "./keys.js";
 
 const FORM = "input, select, textarea, [contenteditable]";

@@ -60,7 +60,12 @@ const TABLE = [
   ["save", "frame", ["s", "Ctrl+s"], () => gettext("save now (it also happens by itself)")],
   ["zoom", "view", ["z"], () => gettext("zoom all views to the selected person, and back")],
   ["largeView", "view", ["v"], () => gettext("the active view large, and back")],
-  ["toggleView", "view", ["1", "2", "3", "4", "5", "6", "7", "8", "9"], () => gettext("hide that view, or show it again")],
+  [
+    "toggleView",
+    "view",
+    ["1", "2", "3", "4", "5", "6", "7", "8", "9"],
+    () => gettext("hide that view, or show it again"),
+  ],
   ["allViews", "view", ["0"], () => gettext("all views, alike")],
   ["views", "view", ["u"], () => gettext("which views are shown, brightness and contrast of each")],
   ["outline", "view", ["t"], () => gettext("show the border of the ground area")],
@@ -86,7 +91,11 @@ let chosen = {};
 /** @param {Record<string, string[]>} keys chords by id; whatever is not in it has the keys of the table */
 export function useKeys(keys) {
   const reserved = TABLE.filter(([id]) => FIXED.includes(id)).flatMap(([, , own]) => own);
-  const fits = ([id, own]) => !FIXED.includes(id) && Array.isArray(own) && own.length && own.every((key) => typeof key === "string" && !reserved.includes(key));
+  const fits = ([id, own]) =>
+    !FIXED.includes(id) &&
+    Array.isArray(own) &&
+    own.length &&
+    own.every((key) => typeof key === "string" && !reserved.includes(key));
   chosen = Object.fromEntries(Object.entries(keys).filter(fits));
 }
 

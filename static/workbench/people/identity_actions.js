@@ -1,7 +1,7 @@
 import { fetchedDialog } from "../../base/lazy.js";
-import { keyFor } from "../keys/keys.js";
-import { loadMissing } from "../../saving/load_missing.js";
 import { gettext, ngettext } from "../../base/messages.js";
+import { loadMissing } from "../../saving/load_missing.js";
+import { keyFor } from "../keys/keys.js";
 
 /** What an annotator does about who is who. Every row shows what it will change, then runs one command. */
 export class IdentityActions {
@@ -31,7 +31,10 @@ export class IdentityActions {
       const dialog = await this._dialog();
       if (!dialog || !(await this._loadAll())) return;
       const { scene, store, history } = this;
-      const patch = await dialog.chooseIdentity({ scene, store, history, mapColours: this.panes.options.mapColours }, { ...start, person });
+      const patch = await dialog.chooseIdentity(
+        { scene, store, history, mapColours: this.panes.options.mapColours },
+        { ...start, person },
+      );
       if (patch) this._run(patch);
     } finally {
       this._asking = false;
@@ -42,7 +45,9 @@ export class IdentityActions {
     this.history.run(patch);
     const frames = new Set(patch.edits.map(({ frame }) => frame)).size;
     const where = ngettext("in {n} frame", "in {n} frames", frames);
-    this.notices.say(gettext("Done {where}: {label} – {key} takes all of it back", { where, label: patch.label, key: keyFor("undo") }));
+    this.notices.say(
+      gettext("Done {where}: {label} – {key} takes all of it back", { where, label: patch.label, key: keyFor("undo") }),
+    );
   }
 
   /** Of a long layer only a piece is there, but a person may be anywhere in it. */

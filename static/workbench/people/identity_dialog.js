@@ -1,8 +1,8 @@
 import { ask } from "../../base/dialogs.js";
 import { element, setText } from "../../base/dom.js";
-import { LARGEST, everybody, framesWith, plan } from "../../truth/identity.js";
-import { beforeAndAfter, changeList } from "./identity_preview.js";
 import { gettext, ngettext } from "../../base/messages.js";
+import { everybody, framesWith, LARGEST, plan } from "../../truth/identity.js";
+import { beforeAndAfter, changeList } from "./identity_preview.js";
 
 const SCOPES = [
   ["here", () => gettext("in this frame only")],
@@ -27,7 +27,11 @@ export async function chooseIdentity({ scene, store, history, mapColours }, star
     clash.hidden = !found.both.length;
     if (found.both.length) askWhoStays(clash, found.both, choice, change);
     setText(said, found.problem ?? "");
-    preview.replaceChildren(...(patch ? [changeList(store, patch), beforeAndAfter(scene, store, mapColours, patch, [choice.person, choice.other])] : []));
+    preview.replaceChildren(
+      ...(patch
+        ? [changeList(store, patch), beforeAndAfter(scene, store, mapColours, patch, [choice.person, choice.other])]
+        : []),
+    );
     const apply = preview.closest("dialog")?.querySelector('[data-answer="apply"]');
     if (apply) apply.disabled = !found.patch;
   };
@@ -64,7 +68,8 @@ function fields(scene, store, choice, change) {
   const { kind } = choice;
   return [
     kind === "rename" && labelled(gettext("New number"), numberField(choice, change)),
-    (kind === "join" || kind === "swap") && labelled(gettext("The other person"), personMenu(scene, store, choice, change)),
+    (kind === "join" || kind === "swap") &&
+      labelled(gettext("The other person"), personMenu(scene, store, choice, change)),
     (kind === "rename" || kind === "remove") && labelled(gettext("Where"), scopeMenu(choice, change)),
   ].filter(Boolean);
 }
@@ -84,17 +89,31 @@ function numberField(choice, change) {
 }
 
 function scopeMenu(choice, change) {
-  const options = SCOPES.map(([scope, label]) => element("option", { value: scope, selected: scope === choice.scope }, label()));
+  const options = SCOPES.map(([scope, label]) =>
+    element("option", { value: scope, selected: scope === choice.scope }, label()),
+  );
   return element("select", { onchange: ({ target }) => change({ scope: target.value }) }, options);
 }
 
 /** For a swap whoever is in this frame, for a join everybody; the nearest first. */
 function personMenu(scene, store, choice, change) {
-  const persons = (choice.kind === "swap" ? [...store.people().keys()] : everybody(store)).filter((one) => one !== choice.person);
-  const ordered = persons.map((person) => ({ person, away: metresApart(scene, store, choice.person, person) })).sort((one, other) => one.away - other.away);
+  const persons = (choice.kind === "swap" ? [...store.people().keys()] : everybody(store)).filter(
+    (one) => one !== choice.person,
+  );
+  const ordered = persons
+    .map((person) => ({ person, away: metresApart(scene, store, choice.person, person) }))
+    .sort((one, other) => one.away - other.away);
   choice.other ??= ordered[0]?.person ?? null;
   const options = ordered.map(({ person, away }) =>
-    element("option", { value: person, selected: person === choice.other }, gettext("{person} – at {metres} m, {frames}", { person, metres: away.toFixed(1), frames: frameCount(store, person) })),
+    element(
+      "option",
+      { value: person, selected: person === choice.other },
+      gettext("{person} – at {metres} m, {frames}", {
+        person,
+        metres: away.toFixed(1),
+        frames: frameCount(store, person),
+      }),
+    ),
   );
   return element("select", { onchange: ({ target }) => change({ other: Number(target.value) }) }, options);
 }
@@ -107,7 +126,10 @@ function frameCount(store, person) {
 /** How near the two are: here if both are here, else where they are nearest in time, at the ends of their paths. */
 function metresApart(scene, store, person, other) {
   const between = (here, there) => {
-    const [from, to] = [scene.metres(store.person(person, here).position), scene.metres(store.person(other, there).position)];
+    const [from, to] = [
+      scene.metres(store.person(person, here).position),
+      scene.metres(store.person(other, there).position),
+    ];
     return Math.hypot(from.x - to.x, from.y - to.y);
   };
   if (store.person(person) && store.person(other)) return between(store.current, store.current);
@@ -126,7 +148,12 @@ function closest(numbers, wanted) {
 /** Said again only when it is about other people or frames: a menu in use is left alone. */
 function askWhoStays(clash, both, choice, change) {
   const { person, other, kind, keep } = choice;
-  const words = ngettext("{person} and {other} are both marked in {n} frame:", "{person} and {other} are both marked in {n} frames:", both.length, { person, other });
+  const words = ngettext(
+    "{person} and {other} are both marked in {n} frame:",
+    "{person} and {other} are both marked in {n} frames:",
+    both.length,
+    { person, other },
+  );
   if (clash.firstChild?.textContent === words) return;
   const [moved, present] = kind === "join" ? [other, person] : [person, other];
   const options = [
@@ -134,7 +161,11 @@ function askWhoStays(clash, both, choice, change) {
     ["moved", gettext("they are the same: keep where {person} stands", { person: moved })],
     ...(kind === "rename" ? [["both", gettext("they are two people: swap their numbers")]] : []),
   ].map(([value, label]) => element("option", { value, selected: value === keep }, label));
-  const menu = element("select", { className: "keep", "aria-label": gettext("Who stays"), onchange: ({ target }) => change({ keep: target.value }) }, options);
+  const menu = element(
+    "select",
+    { className: "keep", "aria-label": gettext("Who stays"), onchange: ({ target }) => change({ keep: target.value }) },
+    options,
+  );
   clash.replaceChildren(element("span", {}, words), menu);
 }
 
@@ -149,5 +180,11 @@ function titleOf({ kind, person }) {
 }
 
 function buttonOf({ kind }) {
-  return { rename: gettext("Rename"), split: gettext("Split"), join: gettext("Join"), swap: gettext("Swap"), remove: gettext("Remove") }[kind];
+  return {
+    rename: gettext("Rename"),
+    split: gettext("Split"),
+    join: gettext("Join"),
+    swap: gettext("Swap"),
+    remove: gettext("Remove"),
+  }[kind];
 }

@@ -1,12 +1,12 @@
 /** What a patch over several frames changes: in words, frame by frame, and as paths on a map before and after. */
 import { element } from "../../base/dom.js";
-import { CYAN } from "../../views/styles.js";
+import { gettext, ngettext } from "../../base/messages.js";
+import { unit } from "../../base/scale.js";
 import { MapView } from "../../views/map_view.js";
 import { drawFoot, drawLabel, drawPath } from "../../views/marks.js";
-import { gettext, ngettext } from "../../base/messages.js";
 import { union } from "../../views/regions.js";
+import { CYAN } from "../../views/styles.js";
 import { fit, focus } from "../../views/transform.js";
-import { unit } from "../../base/scale.js";
 
 const SIZE = { width: 400, height: 190 }; // CSS pixels
 const AROUND = 1; // metres around the paths
@@ -43,10 +43,23 @@ export function beforeAndAfter(scene, store, mapColours, patch, others = []) {
   const before = pathsOf(store, persons, new Map());
   const after = pathsOf(store, persons, new Map(edits.map((edit) => [`${edit.frame} ${edit.person}`, edit.after])));
   const view = new MapView(scene, "");
-  const bounds = boundsOf(view, [...before, ...after].flatMap(({ people }) => people));
+  const bounds = boundsOf(
+    view,
+    [...before, ...after].flatMap(({ people }) => people),
+  );
   const figure = (title, paths) =>
-    element("figure", {}, element("figcaption", {}, title), drawn(view, bounds, mapColours, paths, store.current, title));
-  return element("div", { className: "before-after" }, figure(gettext("Before"), before), figure(gettext("After"), after));
+    element(
+      "figure",
+      {},
+      element("figcaption", {}, title),
+      drawn(view, bounds, mapColours, paths, store.current, title),
+    );
+  return element(
+    "div",
+    { className: "before-after" },
+    figure(gettext("Before"), before),
+    figure(gettext("After"), after),
+  );
 }
 
 /** "5 becomes 9": who leaves a number is looked for where it stood. */
@@ -66,14 +79,18 @@ function frameChanges(edits) {
 /** @returns {{person, people: {number, one}[]}[]} in the order of frames, with the edits carried out */
 function pathsOf(store, persons, edited) {
   return persons.map((person) => {
-    const at = (number) => (edited.has(`${number} ${person}`) ? edited.get(`${number} ${person}`) : store.person(person, number));
+    const at = (number) =>
+      edited.has(`${number} ${person}`) ? edited.get(`${number} ${person}`) : store.person(person, number);
     return { person, people: store.numbers.map((number) => ({ number, one: at(number) })).filter(({ one }) => one) };
   });
 }
 
 function boundsOf(view, people) {
   const points = people.map(({ one }) => view.foot(one));
-  const box = points.reduce((all, { x, y }) => union(all, { xmin: x - AROUND, ymin: y - AROUND, xmax: x + AROUND, ymax: y + AROUND }), null);
+  const box = points.reduce(
+    (all, { x, y }) => union(all, { xmin: x - AROUND, ymin: y - AROUND, xmax: x + AROUND, ymax: y + AROUND }),
+    null,
+  );
   if (!box) return null;
   const grow = (low, high) => Math.max(0, SMALLEST - (high - low)) / 2;
   const [wide, high] = [grow(box.xmin, box.xmax), grow(box.ymin, box.ymax)];
@@ -83,12 +100,19 @@ function boundsOf(view, people) {
 function drawn(view, bounds, mapColours, paths, current, title) {
   const ratio = (window.devicePixelRatio || 1) * unit();
   const label = `${title}: ${paths.map(({ person, people }) => ngettext("person {person} in {n} frame", "person {person} in {n} frames", people.length, { person })).join(", ")}`;
-  const canvas = element("canvas", { width: SIZE.width * ratio, height: SIZE.height * ratio, role: "img", "aria-label": label });
+  const canvas = element("canvas", {
+    width: SIZE.width * ratio,
+    height: SIZE.height * ratio,
+    role: "img",
+    "aria-label": label,
+  });
   const ctx = canvas.getContext("2d");
   ctx.scale(ratio, ratio);
   const transform = bounds ? focus(bounds, SIZE, 1, Infinity) : fit(view.size, SIZE);
   view.paintBackground(ctx, transform, null, { mapColours, footprints: false });
-  paths.forEach((path, index) => drawPerson(ctx, view, transform, path, current, COLOURS[index % COLOURS.length], DASHES[index % DASHES.length]));
+  paths.forEach((path, index) =>
+    drawPerson(ctx, view, transform, path, current, COLOURS[index % COLOURS.length], DASHES[index % DASHES.length]),
+  );
   return canvas;
 }
 

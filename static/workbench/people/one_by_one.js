@@ -1,7 +1,7 @@
-import { carriedOf } from "../../truth/annotation.js";
 import { fetched } from "../../base/lazy.js";
-import { keyFor } from "../keys/keys.js";
 import { gettext } from "../../base/messages.js";
+import { carriedOf } from "../../truth/annotation.js";
+import { keyFor } from "../keys/keys.js";
 
 /**
  * Going round the yellow people one by one, close up: Enter for who stands right, one right click on the feet for
@@ -71,7 +71,12 @@ export class Round {
   }
 
   _sayAllSeen() {
-    this._notices.say(gettext("Nobody is yellow. Has somebody no box? Click their feet. {on} goes on, {back} goes back", { on: keyFor("nextFrame"), back: keyFor("roundBack") }));
+    this._notices.say(
+      gettext("Nobody is yellow. Has somebody no box? Click their feet. {on} goes on, {back} goes back", {
+        on: keyFor("nextFrame"),
+        back: keyFor("roundBack"),
+      }),
+    );
   }
 
   /** The one before, validated as they are: for a click that was not good enough. */

@@ -1,6 +1,6 @@
 import { element } from "../../base/dom.js";
-import { titleFor } from "../keys/keys.js";
 import { gettext } from "../../base/messages.js";
+import { titleFor } from "../keys/keys.js";
 
 const ABOUT_PERSON = [
   ["rename", () => gettext("Rename")],

@@ -1,13 +1,20 @@
+import { gettext } from "../../base/messages.js";
 import { asList, carriedOf } from "../../truth/annotation.js";
 import * as commands from "../../truth/commands.js";
 import { keyFor } from "../keys/keys.js";
-import { gettext } from "../../base/messages.js";
 
 /** Choosing, validating and removing people of the open frame. Every refusal says why, where the annotator looks. */
 export class PeopleActions {
   /** @param {{select: (person: number) => void}} parts */
   constructor({ store, history, guard, notices, tour, select }) {
-    Object.assign(this, { _store: store, _history: history, _guard: guard, _notices: notices, _tour: tour, _select: select });
+    Object.assign(this, {
+      _store: store,
+      _history: history,
+      _guard: guard,
+      _notices: notices,
+      _tour: tour,
+      _select: select,
+    });
   }
 
   /** Rows for the table of actions, by the ids of the key table. */
@@ -44,7 +51,9 @@ export class PeopleActions {
     const person = this._guard.selected();
     if (!person) return false;
     this._history.run(commands.remove(this._store, person.person));
-    this._notices.say(gettext("Person {person} removed – {key} brings it back", { person: person.person, key: keyFor("undo") }));
+    this._notices.say(
+      gettext("Person {person} removed – {key} brings it back", { person: person.person, key: keyFor("undo") }),
+    );
     return true;
   }
 
@@ -56,7 +65,8 @@ export class PeopleActions {
 
   _selectNeighbour(offset) {
     const people = asList(this._store.people());
-    if (!people.length) return this._notices.say(gettext("Nobody is marked in this frame yet: click on somebody's feet"));
+    if (!people.length)
+      return this._notices.say(gettext("Nobody is marked in this frame yet: click on somebody's feet"));
     const index = people.findIndex(({ person }) => person === this._store.selection);
     const from = index < 0 && offset < 0 ? 0 : index;
     this._select(people[(from + offset + people.length) % people.length].person);

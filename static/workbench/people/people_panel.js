@@ -1,7 +1,7 @@
-import { asList } from "../../truth/annotation.js";
 import { element, setText } from "../../base/dom.js";
 import { gettext, ngettext } from "../../base/messages.js";
 import { paintSoon } from "../../base/repaint.js";
+import { asList } from "../../truth/annotation.js";
 
 /** The list of people in the frame: number, state in words, in how many views they are seen. */
 export class PeoplePanel {
@@ -9,7 +9,13 @@ export class PeoplePanel {
     Object.assign(this, { scene, store });
     this._select = select;
     this._rows = new Map();
-    this._list = element("ul", { className: "people", role: "listbox", tabIndex: 0, "aria-label": gettext("People in this frame"), onkeydown: (event) => this._onKey(event) });
+    this._list = element("ul", {
+      className: "people",
+      role: "listbox",
+      tabIndex: 0,
+      "aria-label": gettext("People in this frame"),
+      onkeydown: (event) => this._onKey(event),
+    });
     this._empty = element("p", { className: "empty" }, gettext("Nobody yet. Click on somebody's feet in any view."));
     this._title = element("h2", {}, gettext("People"));
     this._details = element("p", { className: "details" });
@@ -57,7 +63,12 @@ export class PeoplePanel {
     const views = element("span", { className: "views" });
     const node = element(
       "li",
-      { role: "option", id: `person-${person}`, onclick: () => this._select(person), onmousedown: (event) => event.preventDefault() },
+      {
+        role: "option",
+        id: `person-${person}`,
+        onclick: () => this._select(person),
+        onmousedown: (event) => event.preventDefault(),
+      },
       element("span", { className: "number" }, String(person)),
       state,
       size,

@@ -20,7 +20,9 @@ export class Tour {
 
   /** Whoever is new comes after the others, nearest first. */
   _extend() {
-    const missing = [...this._store.people().keys()].filter((one) => !this._order.includes(one)).sort((one, other) => one - other);
+    const missing = [...this._store.people().keys()]
+      .filter((one) => !this._order.includes(one))
+      .sort((one, other) => one - other);
     while (missing.length) {
       const next = this._nearest(missing);
       this._order.push(next);

@@ -30,7 +30,14 @@ export class WhoIs {
     const width = SLIM * height;
     const left = pane.room.width - EDGE - shown.length * width;
     const cells = shown.map(({ number, one }, index) => ({
-      cell: { x: left + index * width, y: EDGE, width: width - 2, height, view: pane.view.index, picture: this._picture(number, pane.view.index) },
+      cell: {
+        x: left + index * width,
+        y: EDGE,
+        width: width - 2,
+        height,
+        view: pane.view.index,
+        picture: this._picture(number, pane.view.index),
+      },
       one,
     }));
     const pictures = cells.map(({ cell }) => cell.picture?.width ?? 0);

@@ -3,8 +3,9 @@
  * direction that comes closest to Left on the screen there, unless the settings say "the axes of the ground". A
  * held key goes on as it began. The helper draws exactly what the keys do.
  */
-import { YELLOW } from "../../views/styles.js";
+
 import { drawArrow } from "../../views/marks.js";
+import { YELLOW } from "../../views/styles.js";
 
 const SIGNS = { left: "←", right: "→", up: "↑", down: "↓" };
 const LENGTH = 34; // CSS pixels

@@ -1,10 +1,10 @@
+import { gettext } from "../../base/messages.js";
 import { changed } from "../../truth/annotation.js";
+import { insideBy } from "../../truth/ground_point.js";
 import { readoutItem } from "../../views/hints_on_ground.js";
 import { CYAN, YELLOW } from "../../views/styles.js";
-import { gettext } from "../../base/messages.js";
 import { landing } from "./moving.js";
 import { heightReaching } from "./sizes.js";
-import { insideBy } from "../../truth/ground_point.js";
 
 /**
  * Dragging a person by foot, box or dot, or the top of the selected box. All views show at once where the
@@ -15,7 +15,10 @@ export class Dragging {
     Object.assign(this, { _scene: scene, _store: store, _panes: panes, _guard: guard, _moving: moving, _sizes: sizes });
     this._drag = null; // {pane, part, person, offset, at, words}
     panes.addExtra((pane) => this._items(pane));
-    store.on("change", () => this._drag && store.person(this._drag.person.person) !== this._drag.person && this.cancel());
+    store.on(
+      "change",
+      () => this._drag && store.person(this._drag.person.person) !== this._drag.person && this.cancel(),
+    );
     store.on("frame", () => this.cancel());
   }
 

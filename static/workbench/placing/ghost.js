@@ -1,10 +1,10 @@
+import { fetched } from "../../base/lazy.js";
+import { gettext } from "../../base/messages.js";
 import { groundLine } from "../../geometry/ground.js";
 import { annotation } from "../../truth/annotation.js";
-import { fetched } from "../../base/lazy.js";
+import { spotOn, spotWords } from "../../truth/ground_point.js";
 import { crossItem, lineItem, readoutItem } from "../../views/hints_on_ground.js";
 import { CYAN, LOOKS } from "../../views/styles.js";
-import { gettext } from "../../base/messages.js";
-import { spotOn, spotWords } from "../../truth/ground_point.js";
 
 const AGAIN = 10_000; // ms until a part that did not arrive is asked for again
 const SILENT = { say() {} }; // a pointer that moves asks for nothing, so nobody is told what did not arrive
@@ -15,7 +15,14 @@ const SILENT = { say() {} }; // a pointer that moves asks for nothing, so nobody
  */
 export class Ghost {
   constructor({ scene, store, panes, guard, settings, heads }) {
-    Object.assign(this, { _scene: scene, _store: store, _panes: panes, _guard: guard, _settings: settings, _heads: heads });
+    Object.assign(this, {
+      _scene: scene,
+      _store: store,
+      _panes: panes,
+      _guard: guard,
+      _settings: settings,
+      _heads: heads,
+    });
     this._shown = null; // {pane, at, spot, words, annotation, look}
     panes.addExtra((pane) => this._items(pane));
     this._doubtAt = null; // fetched when the pointer comes first
@@ -49,7 +56,10 @@ export class Ghost {
   _words(pane, spot, { metres, settles }) {
     const words = spotWords(this._scene, spot, pane.view.byTable);
     if (this._heads.active) words.push(gettext("the top of the head is here"));
-    if (settles) words.push(gettext("± {cm} cm: Alt + click in {view}, too", { cm: Math.round(100 * metres), view: settles.view.title }));
+    if (settles)
+      words.push(
+        gettext("± {cm} cm: Alt + click in {view}, too", { cm: Math.round(100 * metres), view: settles.view.title }),
+      );
     return words;
   }
 
@@ -84,7 +94,9 @@ export class Ghost {
 
   _isShown(pane, { position, problem }, over) {
     const shown = this._shown;
-    return shown?.pane === pane && shown.over === over && shown.spot.position === position && shown.spot.problem === problem;
+    return (
+      shown?.pane === pane && shown.over === over && shown.spot.position === position && shown.spot.problem === problem
+    );
   }
 
   /** A new person has the usual size, one who is moved keeps their own. */

@@ -1,5 +1,5 @@
-import { keyFor } from "../keys/keys.js";
 import { gettext } from "../../base/messages.js";
+import { keyFor } from "../keys/keys.js";
 
 /** Who may be edited, and why not: every refusal is said where the annotator looks. */
 export class Guard {

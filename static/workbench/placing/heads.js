@@ -1,6 +1,6 @@
 import { Emitter } from "../../base/emitter.js";
-import { keyFor } from "../keys/keys.js";
 import { gettext } from "../../base/messages.js";
+import { keyFor } from "../keys/keys.js";
 
 /**
  * Clicks that mean the top of a head, for people whose feet nobody sees. The place is where the ray through the
@@ -26,7 +26,10 @@ export class Heads extends Emitter {
   refusal(pane) {
     if (!this.active || !pane.view.byTable) return null;
     const words = { view: pane.view.title, key: keyFor("heads") };
-    return gettext("This page does not know the lens of {view}, so heads mean no place there. {key} means the feet again", words);
+    return gettext(
+      "This page does not know the lens of {view}, so heads mean no place there. {key} means the feet again",
+      words,
+    );
   }
 
   /** Metres above the ground of what is clicked on. @param {object|null} person null: somebody new */

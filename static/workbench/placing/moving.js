@@ -1,9 +1,9 @@
-import { changed } from "../../truth/annotation.js";
-import { freePosition } from "../../truth/propagation.js";
-import * as commands from "../../truth/commands.js";
-import { keyFor } from "../keys/keys.js";
 import { gettext } from "../../base/messages.js";
+import { changed } from "../../truth/annotation.js";
+import * as commands from "../../truth/commands.js";
 import { spotOn } from "../../truth/ground_point.js";
+import { freePosition } from "../../truth/propagation.js";
+import { keyFor } from "../keys/keys.js";
 
 const FAR = 10; // positions a step with Shift goes
 
@@ -54,12 +54,14 @@ export class Moving {
     if (this.guard.refused(event)) return;
     const refusal = this.heads.refusal(pane);
     if (refusal) return this.guard.say(event, refusal);
-    if (pane.view.index === null) return this.guard.say(event, gettext("The map sees from nowhere: click the feet in a camera's view"));
+    if (pane.view.index === null)
+      return this.guard.say(event, gettext("The map sees from nowhere: click the feet in a camera's view"));
     const person = this.store.selected();
     if (!person) return this.place(pane, at, event);
     const pixel = this.heads.pixel(pane, at, person);
     if (this.sightings.add(pane, pixel, event, (position) => this.moveTo(person, position, event))) return;
-    if (this.moveHere(pane, at, event)) this.guard.say(event, gettext("Now Alt + click on the same feet in another view"));
+    if (this.moveHere(pane, at, event))
+      this.guard.say(event, gettext("Now Alt + click on the same feet in another view"));
   }
 
   step(name, event, far = null) {
@@ -100,10 +102,14 @@ export class Moving {
     if (refusal) this.guard.say(event, refusal);
     if (refusal) return null;
     const { position, problem } = spotOn(this.scene, this.store, this.heads.ground(pane, at, person));
-    if (problem === "horizon" && pane.view.byTable) this.guard.say(event, gettext("Nobody in the ground area would have their feet here"));
-    else if (problem === "horizon" && this.heads.active) this.guard.say(event, gettext("No head can be here: the line of sight never comes down to it"));
-    else if (problem === "horizon") this.guard.say(event, gettext("Above the horizon there is no ground: click where the feet are"));
-    if (problem === "outside") this.guard.say(event, gettext("Outside the ground area – {key} shows its border", { key: keyFor("outline") }));
+    if (problem === "horizon" && pane.view.byTable)
+      this.guard.say(event, gettext("Nobody in the ground area would have their feet here"));
+    else if (problem === "horizon" && this.heads.active)
+      this.guard.say(event, gettext("No head can be here: the line of sight never comes down to it"));
+    else if (problem === "horizon")
+      this.guard.say(event, gettext("Above the horizon there is no ground: click where the feet are"));
+    if (problem === "outside")
+      this.guard.say(event, gettext("Outside the ground area – {key} shows its border", { key: keyFor("outline") }));
     return position;
   }
 }

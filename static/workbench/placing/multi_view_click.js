@@ -1,7 +1,7 @@
+import { gettext } from "../../base/messages.js";
 import { groundPoint } from "../../geometry/triangulation.js";
 import { crossItem, lineItem, readoutItem } from "../../views/hints_on_ground.js";
 import { CYAN } from "../../views/styles.js";
-import { gettext } from "../../base/messages.js";
 
 const DOUBTFUL = 8; // pixels a click may miss the point that fits all clicks best
 const SHOWN = 8000; // ms
@@ -63,7 +63,9 @@ export class Sightings {
   }
 
   _valid() {
-    return this._annotation !== null && this._frame === this._store.current && this._store.selected() === this._annotation;
+    return (
+      this._annotation !== null && this._frame === this._store.current && this._store.selected() === this._annotation
+    );
   }
 
   _meeting(clicks) {
@@ -83,7 +85,9 @@ export class Sightings {
   /** "C1 2.1 px, C3 11.8 px – check this click or the calibration of C3" */
   _words(clicks) {
     const named = clicks.map(({ index, residual }) => ({ name: this._scene.cameras[index].name, residual }));
-    const list = named.map(({ name, residual }) => gettext("{name} {pixels} px", { name, pixels: residual.toFixed(1) })).join(", ");
+    const list = named
+      .map(({ name, residual }) => gettext("{name} {pixels} px", { name, pixels: residual.toFixed(1) }))
+      .join(", ");
     const worst = named.reduce((one, other) => (other.residual > one.residual ? other : one));
     if (worst.residual <= DOUBTFUL) return gettext("Best place for {n} views: {list}", { n: named.length, list });
     return `${list} – ${gettext("check this click or the calibration of {name}", { name: worst.name })}`;

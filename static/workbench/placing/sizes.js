@@ -1,7 +1,7 @@
-import { changed } from "../../truth/annotation.js";
-import { patch } from "../../truth/commands.js";
 import { failureWords } from "../../base/failure_words.js";
 import { gettext } from "../../base/messages.js";
+import { changed } from "../../truth/annotation.js";
+import { patch } from "../../truth/commands.js";
 
 const STEP = { height: 0.02, radius: 0.01 }; // metres
 
@@ -53,21 +53,30 @@ export class Sizes {
   refused(place = null) {
     const unknown = this.scene.cameras.filter(({ byTable }) => byTable).map(({ name }) => name);
     if (!unknown.length) return false;
-    this.guard.say(place, gettext("Everybody keeps the usual size here: this page does not know the lens of {views}", { views: unknown.join(", ") }));
+    this.guard.say(
+      place,
+      gettext("Everybody keeps the usual size here: this page does not know the lens of {views}", {
+        views: unknown.join(", "),
+      }),
+    );
     return true;
   }
 
   /** The usual size is no size of one's own. */
   _withDefaults(values) {
     return Object.fromEntries(
-      Object.entries(values).map(([name, value]) => [name, Math.abs(value - this.scene.cylinder[name]) < 1e-6 ? null : value]),
+      Object.entries(values).map(([name, value]) => [
+        name,
+        Math.abs(value - this.scene.cylinder[name]) < 1e-6 ? null : value,
+      ]),
     );
   }
 
   /** Long layers are loaded in pieces; the later frames have to be there to be changed. */
   async _laterFramesLoaded() {
     const { store } = this;
-    const missing = () => store.numbers.slice(store.numbers.indexOf(store.current)).find((number) => !store.frame(number).loaded);
+    const missing = () =>
+      store.numbers.slice(store.numbers.indexOf(store.current)).find((number) => !store.frame(number).loaded);
     if (missing() === undefined) return true;
     if (this._loading) return false;
     this._loading = true;
@@ -90,7 +99,10 @@ export function resize(store, person, values) {
   const edits = later
     .filter((number) => store.person(person, number))
     .map((number) => ({ frame: number, person, after: changed(store.person(person, number), values) }));
-  return patch(store, gettext("change the size of person {person}", { person }), edits, { select: person, group: `size ${store.current} ${person}` });
+  return patch(store, gettext("change the size of person {person}", { person }), edits, {
+    select: person,
+    group: `size ${store.current} ${person}`,
+  });
 }
 
 /** The height (metres, whole centimetres) whose rectangle in a view ends at `top` (image pixels). */
@@ -99,7 +111,8 @@ export function heightReaching(scene, view, person, top) {
   while (high - low > 0.005) {
     const middle = (low + high) / 2;
     const box = view.box(changed(person, { height: middle }));
-    if (!box || box.ymin < top) high = middle; // too tall to be seen counts as too tall
+    if (!box || box.ymin < top)
+      high = middle; // too tall to be seen counts as too tall
     else low = middle;
   }
   return allowed(scene, "height", Math.round(low * 100) / 100);

@@ -36,11 +36,23 @@ export class Tutorial {
     this._progress = element("p", { className: "tutorial-progress" });
     this._title = element("h2", { tabIndex: -1 });
     this._text = element("p", {});
-    this._matters = element("ul", { className: "tutorial-matters", hidden: true }, whatMatters().map((text) => element("li", {}, text)));
+    this._matters = element(
+      "ul",
+      { className: "tutorial-matters", hidden: true },
+      whatMatters().map((text) => element("li", {}, text)),
+    );
     this._hint = element("p", { className: "tutorial-hint" });
     this._verdict = element("p", { className: "tutorial-verdict", role: "status" });
-    this._back = element("button", { type: "button", className: "quiet", onclick: () => this._goBack() }, gettext("Back"));
-    this._again = element("button", { type: "button", className: "quiet", onclick: () => window.location.reload() }, gettext("Start over"));
+    this._back = element(
+      "button",
+      { type: "button", className: "quiet", onclick: () => this._goBack() },
+      gettext("Back"),
+    );
+    this._again = element(
+      "button",
+      { type: "button", className: "quiet", onclick: () => window.location.reload() },
+      gettext("Start over"),
+    );
     this._check = element("button", { type: "button", onclick: () => this._ask(true) }, gettext("Check"));
     this._go = element("button", { type: "button", className: "main", hidden: true, onclick: () => this._advance() });
     this.element = element(
@@ -89,7 +101,8 @@ export class Tutorial {
       if (ok) this._praise(message);
       else if (loud) setText(this._verdict, message);
     } catch (error) {
-      if (loud) setText(this._verdict, gettext("The answer could not be checked: {error}", { error: failureWords(error) }));
+      if (loud)
+        setText(this._verdict, gettext("The answer could not be checked: {error}", { error: failureWords(error) }));
     }
   }
 

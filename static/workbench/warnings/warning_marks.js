@@ -1,5 +1,5 @@
-import { HALO, INK, YELLOW } from "../../views/styles.js";
 import { drawPath } from "../../views/marks.js";
+import { HALO, INK, YELLOW } from "../../views/styles.js";
 
 const SIDE = 13; // CSS pixels of the sign
 const BELOW = 7; // under the feet, where no box is
@@ -21,7 +21,12 @@ function item(warning, place, index, from) {
     id: `warning ${warning.key} ${index}`,
     what: warning,
     look: "warning",
-    bounds: { xmin: Math.min(...xs) - SIDE, ymin: Math.min(...ys) - 4, xmax: Math.max(...xs) + SIDE, ymax: Math.max(...ys) + BELOW + SIDE + 4 },
+    bounds: {
+      xmin: Math.min(...xs) - SIDE,
+      ymin: Math.min(...ys) - 4,
+      xmax: Math.max(...xs) + SIDE,
+      ymax: Math.max(...ys) + BELOW + SIDE + 4,
+    },
     draw: (ctx) => {
       if (from) drawPath(ctx, points, { colour: YELLOW, dash: [2, 4] });
       drawSign(ctx, place.x, place.y + BELOW);

@@ -6,6 +6,7 @@ export function warningWords({ kind, persons, value }) {
   return {
     close: () => gettext("{person} and {other} are {metres} m apart", { person, other, metres: value.toFixed(2) }),
     fast: () => gettext("{person} comes here at {speed} m/s", { person, speed: value.toFixed(1) }),
-    renumbered: () => gettext("{person} vanishes, {other} appears {metres} m away", { person, other, metres: value.toFixed(2) }),
+    renumbered: () =>
+      gettext("{person} vanishes, {other} appears {metres} m away", { person, other, metres: value.toFixed(2) }),
   }[kind]();
 }

@@ -20,7 +20,12 @@ export class WarningsPanel {
         if (event.detail > 0) event.currentTarget.blur();
       },
     });
-    this.element = element("section", { className: "warnings", "aria-label": gettext("Warnings") }, this._toggle, this._body);
+    this.element = element(
+      "section",
+      { className: "warnings", "aria-label": gettext("Warnings") },
+      this._toggle,
+      this._body,
+    );
     settings.watch("warningsOpen", (open) => this._open(open));
     warnings.on("change", () => this._update());
     store.on("frame", () => this._markHere());
@@ -38,7 +43,10 @@ export class WarningsPanel {
 
   _update() {
     const { list, dismissed } = this.warnings;
-    setText(this._toggle, list.length ? `⚠ ${ngettext("{n} warning", "{n} warnings", list.length)}` : gettext("No warnings"));
+    setText(
+      this._toggle,
+      list.length ? `⚠ ${ngettext("{n} warning", "{n} warnings", list.length)}` : gettext("No warnings"),
+    );
     this.element.dataset.count = list.length;
     this._again.hidden = dismissed === 0;
     setText(this._again, ngettext("{n} dismissed: show it again", "{n} dismissed: show them again", dismissed));
@@ -56,9 +64,17 @@ export class WarningsPanel {
     return element(
       "li",
       { "data-kind": warning.kind },
-      button(gettext("Frame {place}: {words}", { place, words }), { className: "quiet go", title: gettext("Go there") }, () => this._go(warning)),
+      button(
+        gettext("Frame {place}: {words}", { place, words }),
+        { className: "quiet go", title: gettext("Go there") },
+        () => this._go(warning),
+      ),
       warning.kind === "renumbered" ? button(gettext("Join…"), {}, () => this._join(warning)) : null,
-      button("✕", { title: gettext("This is right: do not warn again"), "aria-label": gettext("Dismiss: {words}", { words }) }, () => this.warnings.dismiss(warning)),
+      button(
+        "✕",
+        { title: gettext("This is right: do not warn again"), "aria-label": gettext("Dismiss: {words}", { words }) },
+        () => this.warnings.dismiss(warning),
+      ),
     );
   }
 
