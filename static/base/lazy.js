@@ -30,7 +30,9 @@ export function fetched(notices, address, make = (module) => module, loaded = lo
         gettext("This part of the page did not arrive: the server does not answer. Nothing is lost – please try again"),
       );
     }
-    return module ? (part ??= make(module)) : null;
+    if (!module) return null;
+    part ??= make(module);
+    return part;
   };
 }
 

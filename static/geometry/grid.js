@@ -2,12 +2,18 @@
 export class Grid {
   /** @param {{columns: number, rows: number, step: number, origin: number[]}} json metres */
   constructor({ columns, rows, step, origin }) {
-    Object.assign(this, { columns, rows, step, origin });
+    this.columns = columns;
+    this.rows = rows;
+    this.step = step;
+    this.origin = origin;
     this.count = columns * rows;
     this.extent = [columns * step, rows * step];
   }
 
-  /** Ground point of a position, metres. */
+  /**
+   * Ground point of a position, metres.
+   * @param {number} position
+   */
   metres(position) {
     const [column, row] = [position % this.columns, Math.floor(position / this.columns)];
     return {
@@ -16,24 +22,32 @@ export class Grid {
     };
   }
 
-  /** Nearest position of a ground point; -1 more than half a step outside the grid. */
+  /**
+   * Nearest position of a ground point; -1 more than half a step outside the grid.
+   * @param {number} x @param {number} y metres
+   */
   position(x, y) {
     const [column, row] = [this._cell(x, 0), this._cell(y, 1)];
     const inside = column >= 0 && row >= 0 && column < this.columns && row < this.rows;
     return inside ? row * this.columns + column : -1;
   }
 
-  /** Nearest position of a ground point, wherever that is; -1 only for NaN. */
+  /**
+   * Nearest position of a ground point, wherever that is; -1 only for NaN.
+   * @param {number} x @param {number} y metres
+   */
   nearest(x, y) {
     const column = Math.min(Math.max(this._cell(x, 0), 0), this.columns - 1);
     const row = Math.min(Math.max(this._cell(y, 1), 0), this.rows - 1);
     return Number.isNaN(column + row) ? -1 : row * this.columns + column;
   }
 
+  /** @param {number} position */
   contains(position) {
     return position >= 0 && position < this.count;
   }
 
+  /** @param {number} metres @param {0|1} axis */
   _cell(metres, axis) {
     return Math.floor((metres - this.origin[axis]) / this.step + 0.5);
   }

@@ -42,7 +42,7 @@ export class Journal {
   }
 
   get _isOpen() {
-    return this._database !== null && this._database.isOpen;
+    return this._database?.isOpen ?? false;
   }
 
   /** From now on this tab and the others of the layer give away different person numbers. */

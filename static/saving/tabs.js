@@ -15,7 +15,9 @@ export async function joinTabs(layer) {
     if (data.kind === "who" && data.asking !== asking)
       channel.postMessage({ kind: "here", name: tab.name, next: tab.next });
     if (data.kind === "here") tab.alive.add(data.name);
-    if (data.next) tab.onNumbers((tab.heard = Math.max(tab.heard, data.next)));
+    if (!data.next) return;
+    tab.heard = Math.max(tab.heard, data.next);
+    tab.onNumbers(tab.heard);
   };
   channel.postMessage({ kind: "who", asking });
   await new Promise((resolve) => setTimeout(resolve, PATIENCE));

@@ -30,7 +30,9 @@ async function fetchCounting(address, headers) {
     if (done) return new Blob(chunks);
     chunks.push(value);
     loaded += value.length;
-    if (loaded - told >= EVERY) self.postMessage({ loaded: (told = loaded), total });
+    if (loaded - told < EVERY) continue;
+    told = loaded;
+    self.postMessage({ loaded, total });
   }
 }
 

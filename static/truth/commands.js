@@ -1,32 +1,46 @@
 /**
  * Edits as values. A command looks at the store and answers with a patch; nothing changes before the history
  * applies it, and its inverse is the same patch read backwards. A patch may reach over several frames.
- * @typedef {{label: string, frame: number, edits: object[], selection: {before, after}, group: string|null,
- *            at: number}} Patch
+ * @typedef {import("./annotation.js").Annotation} Annotation
+ * @typedef {import("./annotation.js").People} People
+ * @typedef {import("./store.js").Store} Store
+ * @typedef {import("./store.js").Edit} Edit
+ * @typedef {import("./store.js").PersonEdit} PersonEdit
+ * @typedef {import("./store.js").FlagEdit} FlagEdit
+ * @typedef {import("./store.js").Flags} Flags
+ * @typedef {{label: string, frame: number, edits: Edit[],
+ *            selection: {before: number|null, after: number|null}, group: string|null, at: number}} Patch
  */
 
 import { gettext, ngettext } from "../base/messages.js";
 import { annotation, CARRIED, changed, VALIDATED } from "./annotation.js";
 import { same } from "./merge.js";
 
-/** A new person, selected. */
+/**
+ * A new person, selected.
+ * @param {Store} store @param {{position: number, height?: number|null, radius?: number|null}} values
+ */
 export function place(store, { position, height = null, radius = null }) {
   const person = store.takePerson();
   const after = annotation({ person, position, height, radius });
   return patch(store, gettext("place person {person}", { person }), [put(store.current, after)], { select: person });
 }
 
-/** Moving is looking: the person is validated by it. */
+/**
+ * Moving is looking: the person is validated by it.
+ * @param {Store} store @param {number} person @param {number} position
+ */
 export function move(store, person, position) {
-  const after = changed(store.person(person), { position, state: VALIDATED });
+  const after = changed(store.marked(person), { position, state: VALIDATED });
   return patch(store, gettext("move person {person}", { person }), [put(store.current, after)], {
     select: person,
     group: `move ${store.current} ${person}`,
   });
 }
 
+/** @param {Store} store @param {number[]} persons */
 export function validate(store, persons) {
-  const edits = persons.map((person) => put(store.current, changed(store.person(person), { state: VALIDATED })));
+  const edits = persons.map((person) => put(store.current, changed(store.marked(person), { state: VALIDATED })));
   const label =
     persons.length === 1
       ? gettext("validate person {person}", { person: persons[0] })
@@ -34,12 +48,16 @@ export function validate(store, persons) {
   return patch(store, label, edits);
 }
 
+/** @param {Store} store @param {number} person */
 export function remove(store, person) {
   const edit = { frame: store.current, person, after: null };
   return patch(store, gettext("remove person {person}", { person }), [edit], { select: null });
 }
 
-/** People from elsewhere come into frame `number`. */
+/**
+ * People from elsewhere come into frame `number`.
+ * @param {Store} store @param {number} number @param {Annotation[]} annotations
+ */
 export function bring(store, number, annotations) {
   const label = ngettext("carry over {n} person", "carry over {n} people", annotations.length);
   return patch(
@@ -50,58 +68,83 @@ export function bring(store, number, annotations) {
   );
 }
 
-/** One person as in another frame, to be looked at; takes the place of what was known here. */
+/**
+ * One person as in another frame, to be looked at; takes the place of what was known here.
+ * @param {Store} store @param {Annotation} after
+ */
 export function copy(store, after) {
   const label = gettext("copy person {person}", { person: after.person });
   return patch(store, label, [put(store.current, after)], { select: after.person });
 }
 
-/** Edits of several frames at once, as one step. `edits` are {frame, person, after}. */
+/**
+ * Edits of several frames at once, as one step. `edits` are {frame, person, after}.
+ * @param {Store} store @param {PersonEdit[]} edits
+ */
 export function fill(store, edits) {
   const frames = new Set(edits.map(({ frame }) => frame)).size;
   return patch(store, ngettext("fill {n} frame", "fill {n} frames", frames), edits);
 }
 
-/** A frame as it was once, with everything that was said about it. */
+/**
+ * A frame as it was once, with everything that was said about it.
+ * @param {Store} store @param {number} number @param {{people: People} & Flags} then @param {string} label
+ * @returns {Patch}
+ */
 export function restore(store, number, { people, done, nobody }, label) {
   const present = store.people(number);
   const changes = [...new Set([...present.keys(), ...people.keys()])]
     .filter((person) => !same(present.get(person), people.get(person)))
     .map((person) => ({ frame: number, person, after: people.get(person) ?? null }));
   const restored = patch(store, label, changes, { frame: number });
+  /** @type {Edit[]} */
   const edits = restored.edits.filter((edit) => !edit.flags);
   const frame = store.frame(number);
   if (frame.done !== done || frame.nobody !== nobody) edits.push(flagEdit(store, number, { done, nobody }));
   return { ...restored, edits };
 }
 
-/** The annotator leaves a frame as done; `nobody`: and says that nobody is there. */
+/**
+ * The annotator leaves a frame as done; `nobody`: and says that nobody is there.
+ * @param {Store} store @param {number} number @param {boolean} nobody @returns {Patch}
+ */
 export function finishFrame(store, number, nobody) {
   const place = store.numbers.indexOf(number) + 1;
   const finished = patch(store, gettext("finish frame {place}", { place }), [], { frame: number });
   return { ...finished, edits: [flagEdit(store, number, { done: true, nobody })] };
 }
 
-/** What the annotator says about a whole frame. */
+/**
+ * What the annotator says about a whole frame.
+ * @param {Store} store @param {number} number @param {Flags} flags @returns {FlagEdit}
+ */
 export function flagEdit(store, number, { done, nobody }) {
   const frame = store.frame(number);
   const before = { done: frame.done, nobody: frame.nobody };
   return { frame: number, flags: { before, after: { done, nobody } } };
 }
 
-/** The same patch backwards. */
+/**
+ * The same patch backwards.
+ * @param {Patch} original @returns {Patch}
+ */
 export function inverse(original) {
+  /** @type {Edit[]} */
   const edits = original.edits.map((edit) =>
     edit.flags
       ? { frame: edit.frame, flags: { before: edit.flags.after, after: edit.flags.before } }
-      : { frame: edit.frame, person: edit.person, before: edit.after, after: edit.before },
+      : { frame: edit.frame, person: edit.person, before: edit.after, after: edit.before ?? null },
   );
   const { before, after } = original.selection;
   return { ...original, edits: edits.reverse(), selection: { before: after, after: before } };
 }
 
-/** Two patches of one group as one: first `before`, last `after`. */
+/**
+ * Two patches of one group as one: first `before`, last `after`.
+ * @param {Patch} first @param {Patch} second @returns {Patch}
+ */
 export function combined(first, second) {
+  /** @type {Edit[]} */
   const edits = first.edits.map((edit) => ({ ...edit }));
   for (const edit of second.edits) {
     const known = edits.find(
@@ -113,7 +156,12 @@ export function combined(first, second) {
   return { ...second, edits, selection: { before: first.selection.before, after: second.selection.after } };
 }
 
-/** Complete edits with what was there before, and drop flags that the edits make untrue. */
+/**
+ * Complete edits with what was there before, and drop flags that the edits make untrue.
+ * @param {Store} store @param {string} label @param {PersonEdit[]} changes
+ * @param {{select?: number|null, group?: string|null, frame?: number}} [options]
+ * @returns {Patch}
+ */
 export function patch(store, label, changes, { select, group = null, frame = store.current } = {}) {
   const edits = changes.map((edit) => ({ ...edit, before: store.person(edit.person, edit.frame) ?? null }));
   return {
@@ -126,10 +174,12 @@ export function patch(store, label, changes, { select, group = null, frame = sto
   };
 }
 
+/** @param {number} frame @param {Annotation} after @returns {PersonEdit} */
 function put(frame, after) {
   return { frame, person: after.person, after };
 }
 
+/** @param {Store} store @param {PersonEdit[]} edits */
 function flagsMadeUntrue(store, edits) {
   const numbers = [...new Set(edits.map((edit) => edit.frame))];
   return numbers.flatMap((number) => {

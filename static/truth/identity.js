@@ -5,6 +5,11 @@
  *            scope: "here"|"onwards"|"everywhere", keep: "moved"|"present"|"both"}} Choice
  *   `other`: the new number, or the second person. `keep`: who stays where both are marked: the one that gets the
  *   number (moved), the one that has it (present), or both with their numbers swapped.
+ * @typedef {import("./annotation.js").Annotation} Annotation
+ * @typedef {import("./commands.js").Patch} Patch
+ * @typedef {import("./store.js").PersonEdit} PersonEdit
+ * @typedef {import("./store.js").Store} Store
+ * @typedef {Choice & {other: number}} Complete a choice without a problem: whoever needs a second number has one
  */
 
 import { gettext } from "../base/messages.js";
@@ -12,39 +17,49 @@ import { changed } from "./annotation.js";
 import { patch } from "./commands.js";
 import { same } from "./merge.js";
 
+const NOBODY = -1; // where a choice needs no second number
 export const LARGEST = 999_999; // a slip of the finger must not use up the numbers of the whole layer
 
 /**
- * @param {Choice} choice
- * @returns {{patch: object|null, both: number[], problem: string|null}} `both`: frames where the number is taken
+ * @param {Store} store @param {Choice} choice
+ * @returns {{patch: Patch|null, both: number[], problem: string|null}} `both`: frames where the number is taken
  */
 export function plan(store, choice) {
-  const { person, other } = choice;
+  const { person, kind } = choice;
   const problem = problemOf(store, choice);
   if (problem) return { patch: null, both: [], problem };
+  const complete = { ...choice, other: choice.other ?? NOBODY };
   const numbers = framesIn(store, scopeOf(choice));
   const both =
-    choice.kind === "rename" || choice.kind === "join"
-      ? framesWith(store, person, numbers).filter((number) => store.person(other, number))
+    kind === "rename" || kind === "join"
+      ? framesWith(store, person, numbers).filter((number) => store.person(complete.other, number))
       : [];
-  const wanted = PLANS[choice.kind](store, choice, numbers);
+  const wanted = PLANS[kind](store, complete, numbers);
   if (!wanted.edits.length) return { patch: null, both, problem: gettext("That would change nothing") };
   return { patch: wanted, both, problem: null };
 }
 
-/** Frames, in order, in which the person is marked. */
+/**
+ * Frames, in order, in which the person is marked.
+ * @param {Store} store @param {number} person @param {number[]} [numbers]
+ */
 export function framesWith(store, person, numbers = store.numbers) {
   return numbers.filter((number) => store.person(person, number));
 }
 
-/** Everybody marked anywhere, by number. */
+/**
+ * Everybody marked anywhere, by number.
+ * @param {Store} store
+ */
 export function everybody(store) {
   const persons = new Set(store.numbers.flatMap((number) => [...store.people(number).keys()]));
   return [...persons].sort((one, other) => one - other);
 }
 
+/** @type {Record<Choice["kind"], (store: Store, choice: Complete, numbers: number[]) => Patch>} */
 const PLANS = {
   rename(store, { person, other, keep }, numbers) {
+    /** @type {[number, number][]} */
     const names =
       keep === "both"
         ? [
@@ -83,25 +98,34 @@ const PLANS = {
   },
 };
 
+/** @param {Choice} choice @returns {Choice["scope"]} */
 function scopeOf({ kind, scope }) {
-  return { split: "onwards", swap: "onwards", join: "everywhere" }[kind] ?? scope;
+  if (kind === "split" || kind === "swap") return "onwards";
+  return kind === "join" ? "everywhere" : scope;
 }
 
+/** @param {Store} store @param {Choice["scope"]} scope */
 function framesIn(store, scope) {
   if (scope === "everywhere") return store.numbers;
   const index = store.numbers.indexOf(store.current);
   return store.numbers.slice(index, scope === "here" ? index + 1 : undefined);
 }
 
-/** Everybody in `names` gets the new name; at most one edit for each person and frame. */
+/**
+ * Everybody in `names` gets the new name; at most one edit for each person and frame.
+ * @param {Store} store @param {number[]} numbers @param {Map<number, number>} names
+ * @param {Choice["keep"]} [keep]
+ * @returns {PersonEdit[]}
+ */
 function relabelled(store, numbers, names, keep = "moved") {
   return numbers.flatMap((frame) => {
     const people = store.people(frame);
     const moving = [...names].filter(([from]) => people.has(from));
+    /** @type {Map<number, Annotation>} */
     const after = new Map();
-    for (const [, to] of moving) if (people.has(to) && !names.has(to)) after.set(to, people.get(to));
+    for (const [, to] of moving) if (people.has(to) && !names.has(to)) after.set(to, store.marked(to, frame));
     for (const [from, to] of moving) {
-      if (!after.has(to) || keep === "moved") after.set(to, changed(people.get(from), { person: to }));
+      if (!after.has(to) || keep === "moved") after.set(to, changed(store.marked(from, frame), { person: to }));
     }
     return [...new Set(moving.flat())]
       .filter((person) => !same(people.get(person), after.get(person)))
@@ -109,6 +133,7 @@ function relabelled(store, numbers, names, keep = "moved") {
   });
 }
 
+/** @param {Store} store @param {Choice} choice @returns {string|null} */
 function problemOf(store, { kind, person, other }) {
   if (kind === "split") {
     const [first] = framesWith(store, person);
@@ -117,7 +142,7 @@ function problemOf(store, { kind, person, other }) {
       : null;
   }
   if (kind === "remove") return null;
-  if (!Number.isInteger(other) || other < 0 || other > LARGEST) {
+  if (other === null || !Number.isInteger(other) || other < 0 || other > LARGEST) {
     return kind === "rename" ? gettext("Which number shall it be?") : gettext("Who is the other person?");
   }
   if (other === person) return gettext("That is the number it has");

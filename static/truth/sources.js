@@ -1,11 +1,21 @@
-/** Frames that people can be carried over from: of the batch, and accepted ones beside it. */
+/**
+ * Frames that people can be carried over from: of the batch, and accepted ones beside it.
+ * @typedef {import("./annotation.js").Annotation} Annotation
+ * @typedef {import("./annotation.js").People} People
+ * @typedef {import("./scene.js").Scene} Scene
+ * @typedef {import("./store.js").Store} Store
+ * @typedef {{number: number, people: People, outside: boolean}} Beside `outside`: of the neighbouring batch
+ * @typedef {Beside & {time: number}} FrameSource seconds
+ */
 import { VALIDATED } from "./annotation.js";
 
 const LOOK_BACK = 4; // frames on one side that movement is read from
 
 /**
  * Frames with people before (`direction` -1) or after (1) a frame, nearest first.
- * @returns {{number, time, people: Map, outside: boolean}[]} `outside`: of the neighbouring batch
+ * @param {Store} store @param {Scene} scene @param {number} number @param {number} direction
+ * @param {(source: Beside) => boolean} counts
+ * @returns {FrameSource[]}
  */
 export function sourcesOn(store, scene, number, direction, counts = () => true) {
   const index = store.numbers.indexOf(number);
@@ -23,6 +33,7 @@ export function sourcesOn(store, scene, number, direction, counts = () => true) 
 /**
  * The side whose people are nearer in time; the earlier one when both are as near. Frames in which nobody was
  * looked at yet are guesses themselves and don't count.
+ * @param {Store} store @param {Scene} scene @param {number} number
  */
 export function nearestSide(store, scene, number) {
   const [before, after] = [-1, 1].map((direction) => sourcesOn(store, scene, number, direction, wasLookedAt));
@@ -31,6 +42,7 @@ export function nearestSide(store, scene, number) {
   return time - before[0].time <= after[0].time - time ? before : after;
 }
 
+/** @param {Beside} source */
 function wasLookedAt({ people, outside }) {
   return outside || [...people.values()].some(({ state }) => state === VALIDATED);
 }
@@ -38,6 +50,7 @@ function wasLookedAt({ people, outside }) {
 /**
  * People from another layer's frame keep their numbers where this layer has never used them; the others are
  * somebody else here, and get new numbers.
+ * @param {Store} store @param {Annotation[]} annotations
  */
 export function withFreeNumbers(store, annotations) {
   const free = new Set(annotations.map(({ person }) => person).filter((person) => store.isUnused(person)));

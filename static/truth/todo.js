@@ -1,7 +1,15 @@
-/** What is left to do, and where. Pure: reads the store, changes nothing. */
+/**
+ * What is left to do, and where. Pure: reads the store, changes nothing.
+ * @typedef {import("./store.js").Store} Store
+ * @typedef {"yellow"|"empty"|"open"|null} Left
+ * @typedef {{kind: "person"|"frame"|"single", number: number, person: number|null, left: Left}} Task
+ */
 import { carriedOf } from "./annotation.js";
 
-/** Why a frame is not finished: "yellow", "empty", "open" (nobody said it is done), or null. */
+/**
+ * Why a frame is not finished: "yellow", "empty", "open" (nobody said it is done), or null.
+ * @param {Store} store @param {number} number @param {boolean} judging @returns {Left}
+ */
 export function leftIn(store, number, judging) {
   const { people, done, nobody, loaded } = store.frame(number);
   if (!loaded) return null;
@@ -13,8 +21,9 @@ export function leftIn(store, number, judging) {
 /**
  * The next thing: a yellow person further down in this frame, then the next frame with something left, around
  * to the first ones, then somebody who is in one frame only.
+ * @param {Store} store @param {boolean} judging
  * @param {Set<number>} asked people in one frame only who were shown already: that can be right
- * @returns {{kind: "person"|"frame"|"single", number, person: number|null, left: string|null} | null}
+ * @returns {Task|null}
  */
 export function nextTask(store, judging, asked = new Set()) {
   const here = carriedOf(store.people()).find(({ person }) => person > (store.selection ?? -1));
@@ -33,12 +42,17 @@ export function nextTask(store, judging, asked = new Set()) {
   return left ? { kind: "frame", number: store.current, person: null, left } : null;
 }
 
-/** People in exactly one frame although somebody is marked in the frames beside it. */
+/**
+ * People in exactly one frame although somebody is marked in the frames beside it.
+ * @param {Store} store @returns {{person: number, number: number}[]}
+ */
 export function singles(store) {
+  /** @type {Map<number, number[]>} */
   const seen = new Map();
   for (const number of store.numbers) {
     for (const person of store.people(number).keys()) seen.set(person, [...(seen.get(person) ?? []), number]);
   }
+  /** @param {number|undefined} number */
   const worked = (number) => number === undefined || store.people(number).size > 0;
   return [...seen]
     .filter(([, numbers]) => numbers.length === 1 && store.numbers.length > 1)

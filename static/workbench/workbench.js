@@ -108,7 +108,7 @@ function fillTable(actions, session, page, parts) {
   for (const topic of [parts.moving, parts.sizes, people, keys, parts.identity]) actions.use(topic.table());
   actions.use(new UndoActions({ ...session, ...page, ...parts }).table());
   actions.use(new TimeActions({ ...session, ...page, ...parts }).table());
-  actions.use(new Round({ ...session, ...page, ...parts, intents, people, escape: () => keys.escape() }).table());
+  actions.use(new Round({ ...session, ...page, ...parts, intents, people, otherwise: () => keys.escape() }).table());
 }
 
 async function startTutorial(panel, parts) {

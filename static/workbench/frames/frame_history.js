@@ -58,7 +58,8 @@ export class FrameHistory {
 
   async _load() {
     const number = this.store.current;
-    const asked = (this._asked += 1);
+    this._asked += 1;
+    const asked = this._asked;
     this.element.hidden = false;
     this._show(null);
     setText(this._title, gettext("History of frame {place}", { place: this.store.numbers.indexOf(number) + 1 }));
@@ -116,7 +117,8 @@ export class FrameHistory {
   }
 
   async _choose(number, revision) {
-    const asked = (this._asked += 1);
+    this._asked += 1;
+    const asked = this._asked;
     const state = await this._ask(asked, () => this.api.frame(number, `?revision=${revision}`));
     if (!state || asked !== this._asked) return;
     this._show({ revision, people: byPerson(state.annotations), done: state.done, nobody: state.nobody });

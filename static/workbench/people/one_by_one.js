@@ -9,10 +9,10 @@ import { keyFor } from "../keys/keys.js";
  * without a box; whoever is placed then is shown close up, too.
  */
 export class Round {
-  /** @param {{people: import("./people_actions.js").PeopleActions, escape: () => void}} parts what is done when not one by one */
-  constructor({ scene, store, images, panes, notices, walk, tour, dragging, heads, intents, people, escape }) {
+  /** @param {{people: import("./people_actions.js").PeopleActions, otherwise: () => void}} parts what Escape does when not one by one */
+  constructor({ scene, store, images, panes, notices, walk, tour, dragging, heads, intents, people, otherwise }) {
     Object.assign(this, { _store: store, _panes: panes, _notices: notices, _walk: walk, _tour: tour });
-    Object.assign(this, { _dragging: dragging, _heads: heads, _people: people, _escape: escape });
+    Object.assign(this, { _dragging: dragging, _heads: heads, _people: people, _otherwise: otherwise });
     this._passed = []; // people gone past in this frame, newest last
     store.on("frame", () => (this._passed = []));
     store.on("selection", ({ after }) => this.on && after !== null && !panes.zoomed && panes.zoom(true));
@@ -35,7 +35,7 @@ export class Round {
       validateAll: () => people.validateAll() && this.on && this._advance(),
       remove: () => people.remove() && this.on && this._advance(),
       nextFrame: () => this._nextFrame(),
-      escape: () => (this.on && !this._dragging.active && !this._heads.active ? this._leave() : this._escape()),
+      escape: () => (this.on && !this._dragging.active && !this._heads.active ? this._leave() : this._otherwise()),
     };
   }
 
