@@ -12,7 +12,7 @@ import { Scene } from "/static/truth/scene.js";
 import { Store } from "/static/truth/store.js";
 import { Images } from "/static/views/images.js";
 import { Pane } from "/static/views/pane.js";
-import { Tour } from "/static/workbench/people/queue.js";
+import { Queue } from "/static/workbench/people/queue.js";
 import { buildWorkbench } from "/static/workbench/workbench.js";
 
 const NEAR = 0.05; // metres from the truth that are near enough
@@ -63,7 +63,7 @@ function makeSession(scene, journal) {
 class Annotator {
   constructor({ scene, store }, truth, plan, seed) {
     Object.assign(this, { scene, store, plan });
-    this._tour = new Tour({ scene, store });
+    this._queue = new Queue({ scene, store });
     this._truth = new Map(
       truth.map((people, index) => [
         store.numbers[index],
@@ -190,7 +190,7 @@ class Annotator {
     );
     const right = this._yellow().length - wrong.length;
     if (!right && !wrong.length && !this._missing().length) return false;
-    const next = this._tour.next(one.person);
+    const next = this._queue.next(one.person);
     if (!this.plan.skip || (wrong.length && one.state === "carried" && wrong.includes(next))) this._key("Enter");
     else if (wrong.length) this._clickRow(wrong[0].person);
     else if (right) this._key("Enter", { shiftKey: true });

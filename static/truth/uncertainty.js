@@ -19,7 +19,7 @@ const BETTER = 0.5; // of the doubt that may be left after it
  * @returns {{metres: number, settles: Pane|null}} standard deviation along the worst direction, and the pane in
  *   which one click more would leave least of it; null when one click is enough, or no other view helps
  */
-export function doubtAt(scene, panes, pane, ground, z) {
+export function uncertaintyAt(scene, panes, pane, ground, z) {
   const own = information(scene, pane, ground, z);
   if (!own) return { metres: 0, settles: null };
   const metres = worst(own);

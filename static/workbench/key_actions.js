@@ -8,14 +8,27 @@ export class KeyActions {
    * @param {{intents: import("../views/intents.js").Intents, pointer: import("../views/pointer.js").Pointer,
    *          setControls: (on: boolean) => void}} parts the pointer's place and meaning are for keys that do what a click does
    */
-  constructor({ store, saver, settings, panes, notices, walk, guard, heads, dragging, intents, pointer, setControls }) {
+  constructor({
+    store,
+    saver,
+    settings,
+    panes,
+    notices,
+    navigation,
+    guard,
+    heads,
+    dragging,
+    intents,
+    pointer,
+    setControls,
+  }) {
     Object.assign(this, {
       _store: store,
       _saver: saver,
       _settings: settings,
       _panes: panes,
       _notices: notices,
-      _walk: walk,
+      _navigation: navigation,
     });
     Object.assign(this, {
       _guard: guard,
@@ -34,9 +47,9 @@ export class KeyActions {
     return {
       moveHere: () => this._moveUnderPointer(),
       heads: () => this._heads.toggle(),
-      nextFrame: () => this._walk.next(),
-      previousFrame: () => this._walk.previous(),
-      reload: () => this._walk.reload(),
+      nextFrame: () => this._navigation.next(),
+      previousFrame: () => this._navigation.previous(),
+      reload: () => this._navigation.reload(),
       save: () => this._save(),
       zoom: () => this._toggleZoom(),
       outline: () => this._toggle("outline"),

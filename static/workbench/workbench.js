@@ -11,7 +11,7 @@ import { Views } from "../views/views.js";
 import { Actions } from "./actions.js";
 import { AnnotatingIntents } from "./annotating_intents.js";
 import { Bar } from "./bar.js";
-import { Walk } from "./frames/navigation.js";
+import { Navigation } from "./frames/navigation.js";
 import { Playback } from "./frames/playback.js";
 import { TimeActions } from "./frames/time_actions.js";
 import { Timeline } from "./frames/timeline.js";
@@ -22,7 +22,7 @@ import { nameKeys } from "./keys/key_titles.js";
 import { Keyboard } from "./keys/keyboard.js";
 import { useKeys } from "./keys/keys.js";
 import { IdentityActions } from "./people/identity_actions.js";
-import { Round } from "./people/one_by_one.js";
+import { OneByOne } from "./people/one_by_one.js";
 import { panelTools } from "./people/panel_tools.js";
 import { PeopleActions } from "./people/people_actions.js";
 import { PeoplePanel } from "./people/people_panel.js";
@@ -46,12 +46,12 @@ export async function buildWorkbench(root, session, { mode, home }) {
   settings.on("change", () => panes.markPeople(true));
   const notices = new Notices();
   const finishing = fetchedDialog(notices, import.meta.resolve("./frames/finish.js"));
-  const finish = async () => (await finishing())?.finishAssignment({ ...session, walk, notices, home });
-  const walk = new Walk({ ...session, notices, finish });
-  const page = { settings, panes, notices, walk };
+  const finish = async () => (await finishing())?.finishAssignment({ ...session, navigation, notices, home });
+  const navigation = new Navigation({ ...session, notices, finish });
+  const page = { settings, panes, notices, navigation };
   const placing = placingParts(session, page);
   const { guard, heads, ghost } = placing;
-  const playback = new Playback({ ...session, walk, settings });
+  const playback = new Playback({ ...session, navigation, settings });
   const actions = new Actions();
   const perform = (id, event) => {
     activity.note(store.current);
@@ -65,7 +65,7 @@ export async function buildWorkbench(root, session, { mode, home }) {
   };
   const panel = new PeoplePanel({ scene, store, select });
   const stage = element("main", { className: "stage" });
-  const timeline = new Timeline({ ...session, walk, playback, perform });
+  const timeline = new Timeline({ ...session, navigation, playback, perform });
   root.replaceChildren(bar.element, stage, timeline.element, notices.element);
   const layout = new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
   const views = new Views({ panes, layout, settings, notices });
@@ -80,11 +80,11 @@ export async function buildWorkbench(root, session, { mode, home }) {
   });
   actions.use(chooseViews(root, views, page));
   new Paths(panes, settings);
-  showFilmstrip(timeline, notices, { ...session, walk, panes, settings });
+  showFilmstrip(timeline, notices, { ...session, navigation, panes, settings });
   if (mode !== "tutorial") addForWork(panel, session, page, { actions, perform, identity, heads, guard });
   watch(session, panes, notices);
-  walk.carryInto(store.current);
-  if (mode === "tutorial") await startTutorial(panel, { ...session, panes, walk, home });
+  navigation.carryInto(store.current);
+  if (mode === "tutorial") await startTutorial(panel, { ...session, panes, navigation, home });
 }
 
 /** What the tutorial does without: buttons about the person, warnings, hints, the frame's history. */
@@ -108,7 +108,7 @@ function fillTable(actions, session, page, parts) {
   for (const topic of [parts.moving, parts.sizes, people, keys, parts.identity]) actions.use(topic.table());
   actions.use(new UndoActions({ ...session, ...page, ...parts }).table());
   actions.use(new TimeActions({ ...session, ...page, ...parts }).table());
-  actions.use(new Round({ ...session, ...page, ...parts, intents, people, otherwise: () => keys.escape() }).table());
+  actions.use(new OneByOne({ ...session, ...page, ...parts, intents, people, otherwise: () => keys.escape() }).table());
 }
 
 async function startTutorial(panel, parts) {
@@ -171,10 +171,10 @@ function chooseViews(root, views, { panes, settings, notices }) {
 }
 
 /** @returns {HTMLElement} the list of warnings; the same warnings are drawn in the panes */
-function warn(session, { settings, panes, notices, walk, actions, identity }) {
+function warn(session, { settings, panes, notices, navigation, actions, identity }) {
   const { store } = session;
   const warnings = new Warnings(session);
-  const acting = new WarningActions({ store, warnings, walk, notices, identity });
+  const acting = new WarningActions({ store, warnings, navigation, notices, identity });
   actions.use(acting.table());
   panes.addExtra((pane) => warningItems(warnings, panes, pane));
   warnings.on("change", () => panes.markPeople());

@@ -92,11 +92,11 @@ def test_going_backwards_the_movement_is_continued_backwards(module_page: Page) 
 def test_yellow_people_come_nearest_first_and_keep_their_turn(module_page: Page) -> None:
     turns = run(
         module_page,
-        {"workbench/people/queue": "Tour"},
+        {"workbench/people/queue": "Queue"},
         """
         const store = frames([one(1, [0, 0]), one(2, [50, 0]), one(3, [10, 0]), one(4, [60, 0])].map(
           (a) => annotation({...a, state: "carried"})));
-        const tour = new Tour({scene, store});
+        const tour = new Queue({scene, store});
         const walk = (from) => { const found = []; for (let next = tour.next(from); found.length < 4;
           next = tour.next(next.person)) found.push(next.person); return found; };
         const before = walk(null);

@@ -17,8 +17,8 @@ const HEAD = 16; // CSS pixels for the frame's number
  * there. One canvas; a crop is painted again only when its picture or its box changed.
  */
 export class Filmstrip {
-  constructor({ scene, store, loader, images, walk, panes, settings }) {
-    Object.assign(this, { scene, store, loader, images, walk, panes, settings });
+  constructor({ scene, store, loader, images, navigation, panes, settings }) {
+    Object.assign(this, { scene, store, loader, images, navigation, panes, settings });
     this._fetching = null;
     this._painted = new Map(); // cell → what it shows
     this._canvas = element("canvas", {});
@@ -44,7 +44,7 @@ export class Filmstrip {
 
   _show(shown) {
     this.element.hidden = !shown;
-    this.walk.lookAround(shown ? REACH : 0);
+    this.navigation.lookAround(shown ? REACH : 0);
     if (shown) this._later();
   }
 
@@ -63,7 +63,7 @@ export class Filmstrip {
   }
 
   paint() {
-    const person = this.store.selection ?? this.walk.held;
+    const person = this.store.selection ?? this.navigation.held;
     setText(this._note, person === null ? gettext("Select somebody to see the person over all frames here") : "");
     if (!this._room) return;
     if (person === null) return this._clear();
@@ -145,7 +145,7 @@ export class Filmstrip {
     const { left, width } = event.currentTarget.getBoundingClientRect();
     const view = views[Math.floor(((event.clientX - left) / width) * views.length)];
     if (event.detail > 0) event.currentTarget.blur();
-    await this.walk.jump(number);
+    await this.navigation.jump(number);
     if (this.store.current !== number) return; // it could not be loaded
     this.store.select(person);
     const pane = this.panes.all.find((one) => one.view.index === view);

@@ -14,7 +14,7 @@ export function summary(store) {
 }
 
 /** The summary after the last frame; submits, or jumps to a frame. */
-export async function finishAssignment({ store, saver, api, walk, notices, home }) {
+export async function finishAssignment({ store, saver, api, navigation, notices, home }) {
   const saved = await saver.flush();
   const rows = summary(store);
   const unfinished = rows.filter(({ done }) => !done);
@@ -40,19 +40,19 @@ export async function finishAssignment({ store, saver, api, walk, notices, home 
     waiting.closest("dialog").querySelector('[data-answer="submit"]').disabled = unfinished.length > 0;
   });
   const answer = await answered.finally(stop);
-  if (answer === "first") return walk.open(unfinished[0].number);
-  if (answer?.startsWith("frame ")) return walk.open(Number(answer.slice(6)));
-  if (answer === "submit") return submit({ api, walk, notices, home });
+  if (answer === "first") return navigation.open(unfinished[0].number);
+  if (answer?.startsWith("frame ")) return navigation.open(Number(answer.slice(6)));
+  if (answer === "submit") return submit({ api, navigation, notices, home });
 }
 
-async function submit({ api, walk, notices, home }) {
+async function submit({ api, navigation, notices, home }) {
   try {
     await api.submit();
     window.location.assign(home);
   } catch (error) {
     const frames = error instanceof ApiError && error.code === "unfinished" ? error.details.frames : [];
     notices.say(gettext("Not submitted: {reason}", { reason: failureWords(error) }));
-    if (frames.length) return walk.open(frames[0]);
+    if (frames.length) return navigation.open(frames[0]);
   }
 }
 

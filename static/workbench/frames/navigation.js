@@ -15,7 +15,7 @@ const PLAYING = 8; // frames fetched ahead of a running film
  * Going through the frames. Leaving a frame forwards says it is done; a frame nobody has been to starts with
  * the people of the frames beside it, moved on the way they walked, yellow.
  */
-export class Walk {
+export class Navigation {
   constructor({ scene, store, history, saver, images, loader, notices, finish }) {
     Object.assign(this, { scene, store, history, saver, images, loader, notices });
     this._finish = finish;

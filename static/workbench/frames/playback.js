@@ -2,9 +2,9 @@ import { Emitter } from "../../base/emitter.js";
 
 /** Plays through the frames, only looking. Never skips a frame: it waits for pictures. Emits `change`. */
 export class Playback extends Emitter {
-  constructor({ scene, store, images, walk, settings }) {
+  constructor({ scene, store, images, navigation, settings }) {
     super();
-    Object.assign(this, { scene, store, images, walk, settings });
+    Object.assign(this, { scene, store, images, navigation, settings });
     this._request = null;
     this._due = 0;
     // Whoever clicks or edits wants to work on what is shown now.
@@ -23,9 +23,9 @@ export class Playback extends Emitter {
 
   /** From here, or from the first frame when this is the last. */
   start() {
-    const { store, walk } = this;
+    const { store, navigation } = this;
     if (store.numbers.length < 2) return;
-    walk.lookAhead(true);
+    navigation.lookAhead(true);
     if (store.neighbour(1) === undefined) this._show(store.numbers[0]);
     this._due = performance.now() + this._interval;
     document.addEventListener("pointerdown", this._onPointer, { capture: true });
@@ -39,9 +39,9 @@ export class Playback extends Emitter {
     cancelAnimationFrame(this._request);
     this._request = null;
     document.removeEventListener("pointerdown", this._onPointer, { capture: true });
-    this.walk.lookAhead(false);
+    this.navigation.lookAhead(false);
     this.emit("change");
-    this.walk.jump(this.store.current);
+    this.navigation.jump(this.store.current);
   }
 
   get _interval() {
@@ -65,7 +65,7 @@ export class Playback extends Emitter {
 
   /** A frame that cannot be loaded ends the film where it is. */
   async _show(number) {
-    if (!(await this.walk.look(number))) this.stop();
+    if (!(await this.navigation.look(number))) this.stop();
   }
 
   /** A picture that failed for good does not hold up the others. */

@@ -13,8 +13,8 @@ const PATHS = ["none", "selected", "all"];
 
 /** What an annotator does across frames: carry, copy, fill, look through, find what is left. */
 export class TimeActions {
-  constructor({ scene, store, history, loader, settings, panes, notices, guard, walk, playback }) {
-    Object.assign(this, { scene, store, history, loader, settings, panes, notices, guard, walk, playback });
+  constructor({ scene, store, history, loader, settings, panes, notices, guard, navigation, playback }) {
+    Object.assign(this, { scene, store, history, loader, settings, panes, notices, guard, navigation, playback });
     this._dialog = fetchedDialog(notices, import.meta.resolve("./fill_dialog.js"));
     this._asked = new Set(); // people in one frame only, shown once
   }
@@ -73,7 +73,12 @@ export class TimeActions {
     const dialog = await this._dialog();
     if (!dialog || !(await loadMissing(this, this._between()))) return;
     const { store, scene, panes } = this;
-    const edits = await dialog.chooseFill(store, scene, panes.options.mapColours, store.selection ?? this.walk.held);
+    const edits = await dialog.chooseFill(
+      store,
+      scene,
+      panes.options.mapColours,
+      store.selection ?? this.navigation.held,
+    );
     if (edits === null) return;
     if (!edits.length)
       return this.notices.say(gettext("Nothing to fill: validate a person in two frames, with frames between them"));
@@ -83,15 +88,15 @@ export class TimeActions {
 
   look(offset) {
     const number = this.store.neighbour(offset);
-    if (number !== undefined) return this.walk.look(number);
+    if (number !== undefined) return this.navigation.look(number);
     this.notices.say(offset > 0 ? gettext("This is the last frame") : gettext("This is the first frame"));
   }
 
   async goToNextTask() {
     if (!(await loadMissing(this, this.store.numbers))) return;
-    const task = nextTask(this.store, this.walk.judging, this._asked);
+    const task = nextTask(this.store, this.navigation.judging, this._asked);
     if (!task) return this.notices.say(gettext("Nothing is left to do here"));
-    if (task.number !== this.store.current) await this.walk.jump(task.number);
+    if (task.number !== this.store.current) await this.navigation.jump(task.number);
     if (task.number !== this.store.current) return; // it could not be loaded
     if (task.person !== null) this.store.select(task.person);
     if (task.kind === "single") {
@@ -127,7 +132,7 @@ export class TimeActions {
   }
 
   _whomToCopy({ people }) {
-    const person = this.store.selection ?? this.walk.held;
+    const person = this.store.selection ?? this.navigation.held;
     return people.has(person) ? person : null;
   }
 

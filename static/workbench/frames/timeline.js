@@ -9,8 +9,8 @@ import { titleFor } from "../keys/keys.js";
  * by shape: ✓ done, a dashed ring yellow left, a dot worked on, nothing where nobody is yet; • not saved yet.
  */
 export class Timeline {
-  constructor({ store, saver, walk, playback, perform }) {
-    Object.assign(this, { store, saver, walk, playback });
+  constructor({ store, saver, navigation, playback, perform }) {
+    Object.assign(this, { store, saver, navigation, playback });
     this._cells = new Map();
     this._changed = new Set();
     this._unsaved = new Set();
@@ -96,12 +96,12 @@ export class Timeline {
     const number = numbers[Math.max(0, Math.min(numbers.length - 1, index))];
     if (number === this._scrubbing) return;
     this._scrubbing = number;
-    this.walk.look(number);
+    this.navigation.look(number);
   }
 
   _land() {
     if (this._scrubbing === null) return;
-    this.walk.jump(this._scrubbing);
+    this.navigation.jump(this._scrubbing);
     this._scrubbing = null;
   }
 
@@ -120,7 +120,7 @@ export class Timeline {
     if (!(event.key in wanted)) return;
     event.preventDefault();
     const number = numbers[wanted[event.key]];
-    if (number !== undefined) this.walk.jump(number);
+    if (number !== undefined) this.navigation.jump(number);
   }
 
   /** Of a long layer only the cells of changed frames are looked at: this runs for every step of a held key. */

@@ -7,7 +7,7 @@ const PACES = [
   [60, 2],
 ]; // repeats after which so many positions are gone at once
 
-export class Held {
+export class KeyRepeat {
   constructor(settings) {
     this._settings = settings;
     this._name = null;

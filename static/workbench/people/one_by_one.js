@@ -8,10 +8,23 @@ import { keyFor } from "../keys/keys.js";
  * who does not, and the views show the next one. After the last one they show everything again, for people
  * without a box; whoever is placed then is shown close up, too.
  */
-export class Round {
+export class OneByOne {
   /** @param {{people: import("./people_actions.js").PeopleActions, otherwise: () => void}} parts what Escape does when not one by one */
-  constructor({ scene, store, images, panes, notices, walk, tour, dragging, heads, intents, people, otherwise }) {
-    Object.assign(this, { _store: store, _panes: panes, _notices: notices, _walk: walk, _tour: tour });
+  constructor({
+    scene,
+    store,
+    images,
+    panes,
+    notices,
+    navigation,
+    queue,
+    dragging,
+    heads,
+    intents,
+    people,
+    otherwise,
+  }) {
+    Object.assign(this, { _store: store, _panes: panes, _notices: notices, _navigation: navigation, _queue: queue });
     Object.assign(this, { _dragging: dragging, _heads: heads, _people: people, _otherwise: otherwise });
     this._passed = []; // people gone past in this frame, newest last
     store.on("frame", () => (this._passed = []));
@@ -59,7 +72,7 @@ export class Round {
 
   /** @returns {boolean} whether somebody is yellow */
   _selectNext() {
-    const next = this._tour.next(this._store.selection ?? this._passed.at(-1) ?? null);
+    const next = this._queue.next(this._store.selection ?? this._passed.at(-1) ?? null);
     if (next) this._store.select(next.person);
     return next !== undefined;
   }
@@ -90,7 +103,7 @@ export class Round {
 
   async _nextFrame() {
     const before = this._store.current;
-    await this._walk.next();
+    await this._navigation.next();
     if (!this.on || this._store.current === before) return;
     if (!carriedOf(this._store.people()).length) return this._showEverything();
     this._store.select(null); // from the first one on, whoever was looked at last

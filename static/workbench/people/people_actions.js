@@ -6,13 +6,13 @@ import { keyFor } from "../keys/keys.js";
 /** Choosing, validating and removing people of the open frame. Every refusal says why, where the annotator looks. */
 export class PeopleActions {
   /** @param {{select: (person: number) => void}} parts */
-  constructor({ store, history, guard, notices, tour, select }) {
+  constructor({ store, history, guard, notices, queue, select }) {
     Object.assign(this, {
       _store: store,
       _history: history,
       _guard: guard,
       _notices: notices,
-      _tour: tour,
+      _queue: queue,
       _select: select,
     });
   }
@@ -58,7 +58,7 @@ export class PeopleActions {
   }
 
   selectCarried() {
-    const next = this._tour.next(this._store.selection);
+    const next = this._queue.next(this._store.selection);
     if (!next) return this._notices.say(gettext("Nobody is yellow in this frame"));
     this._select(next.person);
   }

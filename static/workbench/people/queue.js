@@ -4,7 +4,7 @@ import { CARRIED } from "../../truth/annotation.js";
  * The order in which the people of the open frame come: from the smallest number on, always the nearest next, so
  * that eyes and pointer travel little. Whoever has a place in it keeps it as long as the frame is open.
  */
-export class Tour {
+export class Queue {
   constructor({ scene, store }) {
     Object.assign(this, { _scene: scene, _store: store, _order: [] });
     store.on("frame", () => (this._order = []));

@@ -20,7 +20,7 @@ const GROUND = {
 };
 
 export class Arrows {
-  /** @param {{held: import("../keys/key_repeat.js").Held}} parts */
+  /** @param {{held: import("../keys/key_repeat.js").KeyRepeat}} parts */
   constructor({ panes, settings, held }) {
     Object.assign(this, { _panes: panes, _settings: settings, _held: held });
   }

@@ -75,7 +75,7 @@ export class Ghost {
     this._fetching = true;
     const part = await this._doubtPart();
     if (!part) return void setTimeout(() => (this._fetching = false), AGAIN);
-    this._doubtAt = part.doubtAt;
+    this._doubtAt = part.uncertaintyAt;
     const shown = this._shown;
     this._shown = null;
     if (shown) this.hover(shown.pane, shown.at, shown.over);

@@ -9,8 +9,8 @@ const FAR = 10; // positions a step with Shift goes
 
 /** Placing people and moving them, by click and by arrow key. */
 export class Moving {
-  constructor({ scene, store, history, guard, ghost, sightings, heads, arrows, held }) {
-    Object.assign(this, { scene, store, history, guard, ghost, sightings, heads });
+  constructor({ scene, store, history, guard, ghost, multiViewClick, heads, arrows, held }) {
+    Object.assign(this, { scene, store, history, guard, ghost, multiViewClick, heads });
     Object.assign(this, { _arrows: arrows, _held: held });
   }
 
@@ -35,7 +35,7 @@ export class Moving {
     }
     this.ghost.hide();
     this.history.run(commands.place(this.store, { position }));
-    this.sightings.begin(pane, this.heads.pixel(pane, at, null));
+    this.multiViewClick.begin(pane, this.heads.pixel(pane, at, null));
     return true;
   }
 
@@ -45,7 +45,7 @@ export class Moving {
     const position = person && this._positionUnder(pane, at, event, person);
     if (!person || position === null || !this.moveTo(person, position, event)) return false;
     this.ghost.hide();
-    this.sightings.begin(pane, this.heads.pixel(pane, at, person));
+    this.multiViewClick.begin(pane, this.heads.pixel(pane, at, person));
     return true;
   }
 
@@ -59,7 +59,7 @@ export class Moving {
     const person = this.store.selected();
     if (!person) return this.place(pane, at, event);
     const pixel = this.heads.pixel(pane, at, person);
-    if (this.sightings.add(pane, pixel, event, (position) => this.moveTo(person, position, event))) return;
+    if (this.multiViewClick.add(pane, pixel, event, (position) => this.moveTo(person, position, event))) return;
     if (this.moveHere(pane, at, event))
       this.guard.say(event, gettext("Now Alt + click on the same feet in another view"));
   }

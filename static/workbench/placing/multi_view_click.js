@@ -12,7 +12,7 @@ const BAD = "#ff8f86";
  * is off in its view tells bad clicks and bad calibration. Clicks count as long as nobody moves the person
  * by other means.
  */
-export class Sightings {
+export class MultiViewClick {
   constructor({ scene, store, panes, guard }) {
     Object.assign(this, { _scene: scene, _store: store, _panes: panes, _guard: guard });
     this._annotation = null; // the person as the clicks have put them

@@ -11,8 +11,8 @@ const SETTLED = 600; // ms without an edit before the server is asked
  * start over; nothing is saved here but that a step was done.
  */
 export class Tutorial {
-  constructor({ api, store, panes, walk, home }) {
-    Object.assign(this, { _api: api, _store: store, _walk: walk, _home: home });
+  constructor({ api, store, panes, navigation, home }) {
+    Object.assign(this, { _api: api, _store: store, _navigation: navigation, _home: home });
     this._spotlight = new Spotlight(panes);
     this._index = 0;
     this._timer = null;
@@ -139,7 +139,7 @@ export class Tutorial {
   async _goBack() {
     const index = this._index - 1;
     const number = this._store.numbers[this._steps[index].frame];
-    if (this._store.current !== number) await this._walk.jump(number);
+    if (this._store.current !== number) await this._navigation.jump(number);
     await this._goTo(index);
   }
 

@@ -3,8 +3,8 @@ import { warningWords } from "./warning_words.js";
 
 /** Going from warning to warning, and doing something about them. */
 export class WarningActions {
-  constructor({ store, warnings, walk, notices, identity }) {
-    Object.assign(this, { store, warnings, walk, notices, identity });
+  constructor({ store, warnings, navigation, notices, identity }) {
+    Object.assign(this, { store, warnings, navigation, notices, identity });
     this._last = null;
   }
 
@@ -24,7 +24,7 @@ export class WarningActions {
   /** Without saying anything about the frame one leaves. */
   async go(warning) {
     this._last = warning;
-    if (warning.frame !== this.store.current) await this.walk.look(warning.frame);
+    if (warning.frame !== this.store.current) await this.navigation.look(warning.frame);
     if (warning.frame !== this.store.current) return; // it could not be loaded, or one went on meanwhile
     this.store.select(warning.persons.findLast((person) => this.store.person(person)) ?? null);
     this.notices.say(warningWords(warning));
