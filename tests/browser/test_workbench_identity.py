@@ -11,8 +11,8 @@ from playwright.sync_api import Locator, Page, expect
 
 from gtm_hit.models import Annotation
 from tests.browser.bench import Bench
+from tests.browser.modules import run
 from tests.browser.street import annotate
-from tests.browser.test_workbench_modules import run
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 

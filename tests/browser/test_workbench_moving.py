@@ -11,8 +11,8 @@ from playwright.sync_api import Page, expect
 
 from gtm_hit.geometry.camera import project
 from tests.browser.bench import Bench, best_view, metres_apart, well_seen
+from tests.browser.modules import run
 from tests.browser.street import GRID, annotate, cameras
-from tests.browser.test_workbench_modules import run
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 

@@ -17,8 +17,8 @@ from gtm_hit.geometry.camera import project
 from gtm_hit.geometry.cylinder import HEIGHTS, RADII, Cylinder, FootRule, rectangles
 from gtm_hit.models import Annotation, Frame, Layer
 from tests.browser.bench import Bench, best_view, metres_apart, well_seen
+from tests.browser.modules import run
 from tests.browser.street import CYLINDER, FRAME_STEP, GRID, annotate, cameras, make_street
-from tests.browser.test_workbench_modules import run
 from tests.browser.test_workbench_moving import all_saved
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]

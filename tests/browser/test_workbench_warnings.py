@@ -15,9 +15,9 @@ from playwright.sync_api import Page, expect
 
 from gtm_hit.ops.frames.saving import save_frame
 from tests.browser.bench import Bench
+from tests.browser.modules import run
 from tests.browser.street import GRID
 from tests.browser.test_workbench_identity import saved_with
-from tests.browser.test_workbench_modules import run
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
