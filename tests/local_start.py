@@ -57,9 +57,9 @@ class Start:
         """All processes that hold the data."""
         return [pid for pid in all_processes() if pid != self.process.pid and self._uses_data(pid)]
 
-    def part(self, word: str) -> int:
-        """The first process of the start whose command has the word."""
-        return min(pid for pid in self.parts() if word in command(pid))
+    def part(self, word: str) -> int | None:
+        """The first process of the start whose command has the word; None while there is none."""
+        return min((pid for pid in self.parts() if word in command(pid)), default=None)
 
     def _uses_data(self, pid: int) -> bool:
         try:

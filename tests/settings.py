@@ -7,11 +7,16 @@ import tempfile
 from pathlib import Path
 
 os.environ.setdefault("SECRET_KEY", "tests-" + "k" * 40)
-os.environ.setdefault("DATA_DIR", tempfile.mkdtemp(prefix="gtm-tests-"))
+OWN = "gtm-tests-"
+os.environ.setdefault("DATA_DIR", tempfile.mkdtemp(prefix=OWN))
+_given = Path(os.environ["DATA_DIR"])
+if _given.name.startswith(OWN) and (_worker := os.environ.get("PYTEST_XDIST_WORKER")):
+    # Two at once would wait for each other's locks, and see each other's files.
+    os.environ["DATA_DIR"] = str(_given / _worker)
 
 from annotator.settings import *  # noqa: F403
 
-Path(FILE_UPLOAD_TEMP_DIR).mkdir(exist_ok=True)  # noqa: F405
+Path(FILE_UPLOAD_TEMP_DIR).mkdir(parents=True, exist_ok=True)  # noqa: F405
 PASSWORD_HASHERS = ["django.contrib.auth.hashers.MD5PasswordHasher"]
 # Names without hashes: no test has to collect the static files first.
 STORAGES = {

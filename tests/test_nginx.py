@@ -168,6 +168,8 @@ def test_guessing_passwords_is_slowed_down(site: Site) -> None:
     assert site.ask("/gtm/login/", X_Forwarded_For="10.9.8.6", X_Forwarded_Proto="https").status == 200
 
 
+# The server answers and closes before all has come; once in a while the proxy notices the latter first.
+@pytest.mark.flaky(reruns=2)
 def test_a_stranger_who_sends_all_the_same_reads_why_not(site: Site) -> None:
     connection = http.client.HTTPConnection("127.0.0.1", site.port, timeout=30)
     headers = {"Host": "gtm.example.org", "X-Forwarded-Proto": "https", "Content-Type": "application/zip"}

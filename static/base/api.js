@@ -66,7 +66,7 @@ export class Api {
 
   /** An image's bytes; `signal` gives up on views nobody looks at any more. */
   async blob(address, signal) {
-    const limited = AbortSignal.any([signal, AbortSignal.timeout(TIMEOUT_OF_PICTURES)].filter(Boolean));
+    const limited = signalOrTimeout(signal, TIMEOUT_OF_PICTURES);
     return this._fetch(address, { headers: this.headers(), signal: limited }, (response) => response.blob());
   }
 
@@ -108,4 +108,14 @@ export class Api {
 async function errorOf(response) {
   const body = await response.json().catch(() => null);
   return new ApiError(response.status, body?.code ?? "unknown", body?.message ?? response.statusText, body?.details);
+}
+
+/** What AbortSignal.any does, which some browsers do not have yet. @param {AbortSignal} [signal] @param {number} ms */
+function signalOrTimeout(signal, ms) {
+  const both = new AbortController();
+  if (signal?.aborted) both.abort(signal.reason);
+  for (const one of [signal, AbortSignal.timeout(ms)]) {
+    one?.addEventListener("abort", () => both.abort(one.reason), { once: true });
+  }
+  return both.signal;
 }

@@ -11,4 +11,7 @@ def test_scene_and_file_hold_a_cameras_numbers_alike(dataset: Dataset, tmp_path:
     cameras = dataset.calibrated_cameras()
     save_cameras(tmp_path / "cameras.json", cameras)
     read = [camera.as_json() for camera in load_cameras(tmp_path / "cameras.json")]
-    assert dataset_part(dataset)["cameras"] == read == [camera.as_json() for camera in cameras]
+    scene = [
+        {name: each[name] for name in each if name != "grid"} for each in dataset_part(dataset)["cameras"]
+    ]
+    assert scene == read == [camera.as_json() for camera in cameras]

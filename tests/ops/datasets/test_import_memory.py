@@ -68,7 +68,7 @@ class Watched:
         self.lock = threading.Lock()
         self.now = self.most = self.count = 0
 
-    def make(self, picture: Picture, written: set[str], only_check: bool) -> None:
+    def make(self, picture: Picture, only_check: bool) -> None:
         with self.lock:
             self.now += picture.pixels
             self.count += 1
@@ -91,12 +91,12 @@ def of(pixels: int, count: int) -> list[Picture]:
 
 
 def test_the_largest_pictures_are_decoded_one_at_a_time(watched: Watched) -> None:
-    make_pictures(of(100_000_000, 6), set(), lambda *_: None, ProblemList(""))
+    make_pictures(of(100_000_000, 6), lambda *_: None, ProblemList(""))
     assert (watched.count, watched.most) == (6, 100_000_000)
 
 
 def test_usual_pictures_are_decoded_by_all_threads(watched: Watched) -> None:
-    make_pictures(of(2_000_000, 60), set(), lambda *_: None, ProblemList(""))
+    make_pictures(of(2_000_000, 60), lambda *_: None, ProblemList(""))
     assert (watched.count, watched.most > 2_000_000) == (60, True)
 
 
@@ -109,7 +109,7 @@ def test_pictures_are_not_all_queued_at_once(watched: Watched) -> None:
                 taken.append((number, watched.count))
                 yield picture
 
-    make_pictures(Counted(of(100, 200)), set(), lambda *_: None, ProblemList(""))
+    make_pictures(Counted(of(100, 200)), lambda *_: None, ProblemList(""))
     assert max(number - begun for number, begun in taken if number < 200) <= 2 * 8
 
 

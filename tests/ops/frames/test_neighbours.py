@@ -19,7 +19,7 @@ def dataset(db: None) -> Dataset:
 
 def annotated(batch: Batch, state: str = "accepted", **people_of: list[dict[str, Any]]) -> Assignment:
     """The batch's frames (`f45=[row()]` is frame 45) done by somebody, decided upon as `state`."""
-    assignment = assignments.lease(batch, make_worker(f"annotator of {batch.pk}"))
+    assignment = assignments.lease(batch, make_worker(f"annotator of {batch.pk}"), "")
     for name, rows in people_of.items():
         frame = batch.frames.get(number=int(name[1:]))
         save(assignment.layer, frame, rows, author=assignment.worker)

@@ -74,7 +74,7 @@ def test_over_frames_that_are_missing_no_speed_is_known(db: None) -> None:
 
 def test_visibility_takes_a_persons_own_height(db: None) -> None:
     layer = make_layer(make_dataset(frames=40))
-    put(layer, crossing_people()[0], height=0.05)  # wider than tall: not visible
+    put(layer, crossing_people()[0], height=0.3, radius=2.0)  # wider than tall: not visible
     assert layer_statistics(layer).visibility.exactly[0] == 320
 
 

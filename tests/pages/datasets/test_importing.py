@@ -121,7 +121,7 @@ def test_a_hostile_archive_is_refused_on_the_form(staff: Client, tmp_path: Path)
         ({"slug": "no slug"}, "valid “slug”"),
         ({"columns": ""}, "Needed where no published dataset is chosen"),
         ({"step": "-1"}, "greater than or equal to 0"),
-        ({"columns": "100000", "rows": "100000"}, "--grid has more than"),
+        ({"columns": "100000", "rows": "100000"}, "--grid has 10,000,000,000 positions; at most"),
         ({"preset": "kitti"}, "Select a valid choice"),
     ],
 )
