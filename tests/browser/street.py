@@ -49,7 +49,7 @@ def picture(camera_index: int, positions: tuple[int, ...]) -> tuple[str, str]:
     pixels = painted(camera, np.array(positions, dtype=np.int64))
     full = cv2.imencode(".jpg", pixels, [cv2.IMWRITE_JPEG_QUALITY, 85])[1].tobytes()
     light = cv2.imencode(".jpg", cv2.resize(pixels, None, fx=0.5, fy=0.5))[1].tobytes()
-    return images.store(light)[0], images.store(full)[0]
+    return images.store(light), images.store(full)
 
 
 def painted(camera: CalibratedCamera, positions: NDArray[np.int64]) -> NDArray[np.uint8]:

@@ -88,6 +88,8 @@ def test_sixty_repeats_of_a_held_key_are_sixty_steps(bench: Callable[..., Bench]
 def test_moving_asks_the_server_for_nothing_but_the_save(bench: Callable[..., Bench]) -> None:
     opened = bench(people=2).open()
     opened.saved()
+    tables = '() => performance.getEntriesByName("grid file").length === 7'  # they come behind the pictures
+    opened.page.wait_for_function(tables)
     opened.page.wait_for_load_state("networkidle")
     asked: list[str] = []
     opened.page.on("request", lambda request: asked.append(request.method))

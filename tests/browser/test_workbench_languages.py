@@ -65,7 +65,7 @@ def test_every_number_gets_its_plural_form(
 
 COUNT = """async (numbers) => {
   const main = document.querySelector("script[src*=main]").src;
-  const { ngettext } = await import(main.replace("main.js", "messages.js"));
+  const { ngettext } = await import(main.replace("workbench/main.js", "base/messages.js"));
   return numbers.map((n) => ngettext("{n} person", "{n} people", n));
 }"""
 
