@@ -5,7 +5,7 @@ const CELL = 8; // pixels along each side of a bucket
 /**
  * @typedef {{boxes: Int16Array, feet: Int16Array, width: number, height: number}} Feet see grid_file.js; `width` and
  *   `height` of the picture
- * @typedef {{starts: Uint32Array, members: Uint32Array}} FootIndex positions, bucket by bucket
+ * @typedef {{starts: Uint32Array<ArrayBuffer>, members: Uint32Array<ArrayBuffer>}} FootIndex positions, bucket by bucket
  */
 
 /**

@@ -2,7 +2,7 @@
  * Fetches and unpacks grid files beside the page's own thread.
  * @typedef {{address: string, headers: Record<string, string>, width: number, height: number}} Question
  * @typedef {{loaded: number, total: number}} Progress bytes
- * @typedef {{boxes: Int16Array, feet: Int16Array|null, index: import("../geometry/feet.js").FootIndex|null,
+ * @typedef {{boxes: Int16Array<ArrayBuffer>, feet: Int16Array<ArrayBuffer>|null, index: import("../geometry/feet.js").FootIndex|null,
  *            decoded: number}} Found `decoded`: ms
  * @typedef {Found|{error: string}} Answer
  */
