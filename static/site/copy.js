@@ -6,7 +6,7 @@ const buttons = document.querySelectorAll("[data-copy]");
 for (const button of buttons) {
   /** @type {HTMLInputElement|null|undefined} */
   const source = button.parentElement?.querySelector("[data-copy-source]");
-  if (!source) throw new TypeError("there is nothing to copy");
+  if (!source) continue;
   const label = button.textContent;
   button.hidden = false;
   button.addEventListener("click", async () => {
