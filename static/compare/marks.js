@@ -7,7 +7,7 @@ import { sideOf } from "./store.js";
 /**
  * @typedef {import("../geometry/lens.js").XY} XY
  * @typedef {import("../geometry/rectangle.js").Rectangle} Rectangle
- * @typedef {import("../views/pane.js").Pane} Pane
+ * @typedef {import("../views/pane.js").LaidOutPane} LaidOutPane
  * @typedef {import("./store.js").Kind} Kind
  * @typedef {import("./store.js").Mark} Mark
  * @typedef {import("./store.js").Side} Side
@@ -39,20 +39,17 @@ const AROUND = 22; // room a sign with its ring needs around a foot
 
 /**
  * What is drawn of one mark in a pane, or null where neither side is visible.
- * @param {Pane} pane @param {Mark} mark @param {boolean} selected @param {boolean} labels of all
+ * @param {LaidOutPane} pane @param {Mark} mark @param {boolean} selected @param {boolean} labels of all
  */
 export function markItem(pane, mark, selected, labels) {
   const { view, transform } = pane;
   const shown = [mark.truth, mark.found].flatMap((side) => {
-    const shape = side && view.box(side);
-    return shape ? [{ side, shape }] : [];
+    const [shape, point] = side ? [view.box(side), view.foot(side)] : [];
+    return side && shape && point ? [{ side, shape, point }] : [];
   });
   if (!shown.length) return null;
   const look = { ...KINDS[mark.kind].look, selected };
-  const feet = shown.map(({ side }) => {
-    const { x, y } = view.foot(side);
-    return { ...transform.toPane(x, y), side };
-  });
+  const feet = shown.map(({ side, point }) => ({ ...transform.toPane(point.x, point.y), side }));
   const box = view.index === null ? around(feet) : paneBox(shown[0].shape, transform);
   const label = labels || selected ? labelOf(mark, selected) : "";
   return {
@@ -154,7 +151,7 @@ function around(feet) {
   };
 }
 
-/** @param {Rectangle} box @param {NonNullable<Pane["transform"]>} transform */
+/** @param {Rectangle} box @param {import("../views/transform.js").Transform} transform */
 function paneBox(box, transform) {
   const { x: xmin, y: ymin } = transform.toPane(box.xmin, box.ymin);
   const { x: xmax, y: ymax } = transform.toPane(box.xmax, box.ymax);

@@ -13,7 +13,8 @@ import { Emitter } from "../base/emitter.js";
  * @typedef {Told & {kind: "swapped"|"matched", truth: Side, found: Side}} Pair
  * @typedef {Missed|Extra|Pair} MarkJSON as the server sends it
  * @typedef {MarkJSON & {key: number, main: Side}} Mark `main`: one of its sides, numbered by its key
- * @extends {Emitter<{frame: void, marks: void, selection: {after: number|null}}>}
+ * @typedef {{frames: ReadonlySet<number>}} Change never said: nobody moves here
+ * @extends {Emitter<{frame: void, marks: void, selection: {after: number|null}, change: Change}>}
  */
 export class CompareStore extends Emitter {
   /** @param {Line[]} lines of the table of frames, worst first */

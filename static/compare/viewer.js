@@ -11,7 +11,7 @@ import { MarksPanel } from "./panel.js";
 
 /**
  * Builds the page inside `root`: the workbench's panes, with the marks of a comparison instead of people.
- * @typedef {import("../views/pane.js").Pane} Pane
+ * @typedef {import("../views/pane.js").LaidOutPane} LaidOutPane
  * @typedef {import("./store.js").CompareStore} CompareStore
  * @typedef {{truth: string, found: string}} Names of the two layers
  * @typedef {{store: CompareStore, scene: import("../truth/scene.js").Scene, images: import("../views/images.js").Images,
@@ -53,7 +53,7 @@ export function buildViewer(root, { store, scene, images, names, home }) {
 
 /**
  * Matched people first: mistakes are never hidden behind them.
- * @param {Pane} pane @param {CompareStore} store @param {boolean} labels
+ * @param {LaidOutPane} pane @param {CompareStore} store @param {boolean} labels
  */
 function items(pane, store, labels) {
   return store
