@@ -1,7 +1,14 @@
-import { element } from "./dom.js";
+import { element, required } from "./dom.js";
 
 /**
- * Ask and wait. `buttons` are [{id, label, main?}]; Escape answers `null`.
+ * @typedef {import("./dom.js").Child} Child
+ * @typedef {{title: string, body: Child|Child[], wide?: boolean}} Content texts of the body become paragraphs
+ * @typedef {{id: string, label: string, main?: boolean, disabled?: boolean}} Answer a button
+ */
+
+/**
+ * Ask and wait; Escape answers `null`.
+ * @param {Content & {buttons: Answer[]}} question
  * @returns {Promise<string|null>}
  */
 export function ask({ title, body, buttons, wide = false }) {
@@ -21,7 +28,7 @@ export function ask({ title, body, buttons, wide = false }) {
         label,
       ),
     );
-    dialog.querySelector("form").append(element("div", { className: "dialog-buttons" }, row));
+    required(dialog, "form", HTMLFormElement).append(element("div", { className: "dialog-buttons" }, row));
     dialog.addEventListener("close", () => resolve(dialog.returnValue || null));
     dialog.showModal();
     (row.find((button) => button.classList.contains("main") && !button.disabled) ?? row[0])?.focus();
@@ -29,7 +36,10 @@ export function ask({ title, body, buttons, wide = false }) {
   });
 }
 
-/** A dialog with nothing to decide; closes itself away. Call `showModal` on it. */
+/**
+ * A dialog with nothing to decide; closes itself away. Call `showModal` on it.
+ * @param {Content} content
+ */
 export function openDialog({ title, body, wide = false }) {
   const heading = element("h2", { id: "dialog-title" }, title);
   const content = [body].flat().map((part) => (typeof part === "string" ? element("p", {}, part) : part));

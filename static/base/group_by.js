@@ -1,9 +1,15 @@
-/** What Map.groupBy does, which browsers of 2023 lack. */
+/**
+ * What Map.groupBy does, which browsers of 2023 lack.
+ * @template Item, Key
+ * @param {Iterable<Item>} items @param {(item: Item) => Key} keyOf
+ */
 export function groupBy(items, keyOf) {
+  /** @type {Map<Key, Item[]>} */
   const groups = new Map();
   for (const item of items) {
     const key = keyOf(item);
-    if (groups.has(key)) groups.get(key).push(item);
+    const group = groups.get(key);
+    if (group) group.push(item);
     else groups.set(key, [item]);
   }
   return groups;

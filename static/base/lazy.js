@@ -5,19 +5,27 @@ const BESIDE = 500; // ms after the first action: opening is over, and nobody mi
 const LEAVING = 600; // ms; a page that is being left stops its requests, but runs no timers any more
 const TIMEOUT = 20_000; // ms; whoever waits for a part on a dead connection would wait for ever
 const MEANT_FOR_IT = 1000; // ms in which keys pressed after asking for a dialog are not meant for the page
-const present = new Set(); // addresses of modules that are here
-const parts = new Set(); // addresses
+/** @type {Set<string>} addresses of modules that are here */
+const present = new Set();
+/** @type {Set<string>} addresses */
+const parts = new Set();
 let dialogs = 0; // under way
+
+/** @typedef {{say: (text: string) => void}} Says as Notices do */
 
 /**
  * A part that few need, fetched when it is needed. Where it does not arrive, the annotator is told and nothing
  * else happens; the next try fetches it again.
- * @param {{say: (text: string) => void}} notices
+ * @template Module
+ * @template [Part=Module]
+ * @param {Says} notices
  * @param {string} address of its module, from import.meta.resolve
- * @param {(module: object) => object} make what the part is; called once
- * @returns {() => Promise<object|null>} the part, always the same; null: it did not arrive
+ * @param {(module: Module) => Part} [make] what the part is, the module itself unless it is said; called once
+ * @param {(address: string) => Promise<Module>} [loaded]
+ * @returns {() => Promise<Part|null>} the part, always the same; null: it did not arrive
  */
-export function fetched(notices, address, make = (module) => module, loaded = load) {
+export function fetched(notices, address, make = itself, loaded = load) {
+  /** @type {Part|null} */
   let part = null;
   if (!parts.size) notePresent();
   parts.add(address);
@@ -36,14 +44,28 @@ export function fetched(notices, address, make = (module) => module, loaded = lo
   };
 }
 
+/**
+ * @template Module, Part
+ * @param {Module} module
+ */
+function itself(module) {
+  return /** @type {Part} */ (/** @type {unknown} */ (module));
+}
+
 /** Whatever the page itself is made of is here before its first part is spoken of. */
 function notePresent() {
   for (const { name } of performance.getEntriesByType("resource")) present.add(name);
 }
 
-/** A part that is a dialog: for a moment keys wait for it instead of changing something behind it. */
+/**
+ * A part that is a dialog: for a moment keys wait for it instead of changing something behind it.
+ * @template Module
+ * @param {Says} notices @param {string} address
+ * @returns {() => Promise<Module|null>}
+ */
 export function fetchedDialog(notices, address) {
   return fetched(notices, address, undefined, async () => {
+    /** @type {Promise<Module>} */
     const module = load(address);
     dialogs += 1;
     await Promise.race([module, later(MEANT_FOR_IT)]).finally(() => (dialogs -= 1));
@@ -61,7 +83,10 @@ export async function fetchParts() {
   for (const address of parts) await load(address).catch(() => null); // it is asked for again when it is needed
 }
 
-/** A browser never asks again for a module that once failed to arrive, so it is imported when all of it is here. */
+/**
+ * A browser never asks again for a module that once failed to arrive, so it is imported when all of it is here.
+ * @param {string} address
+ */
 async function load(address) {
   if (!present.has(address)) {
     const seen = new Set(present);
@@ -71,6 +96,7 @@ async function load(address) {
   return import(address);
 }
 
+/** @param {string} address @param {Set<string>} seen @returns {Promise<void>} */
 async function reach(address, seen) {
   seen.add(address);
   const answer = await fetch(address, { signal: AbortSignal.timeout(TIMEOUT) });
@@ -80,6 +106,7 @@ async function reach(address, seen) {
   await Promise.all(imported.filter((one) => !seen.has(one)).map((one) => reach(one, seen)));
 }
 
+/** @param {number} ms @returns {Promise<void>} */
 function later(ms) {
   return new Promise((done) => setTimeout(done, ms));
 }

@@ -10,10 +10,12 @@ export class Notices {
     this._live = element("div", { className: "visually-hidden", role: "status", "aria-live": "polite" });
     this._bottom = element("div", { className: "notices" });
     this._beside = element("div", { className: "notice beside", hidden: true });
-    this._timer = null;
+    /** @type {number|undefined} */
+    this._timer = undefined;
     this.element = element("div", {}, this._live, this._bottom, this._beside);
   }
 
+  /** @param {string} text */
   say(text) {
     this._read(text);
     const notice = element("div", { className: "notice" }, text);
@@ -21,7 +23,7 @@ export class Notices {
     setTimeout(() => notice.remove(), SHOWN);
   }
 
-  /** @param {{x: number, y: number} | null} place in CSS pixels of the window */
+  /** @param {{x: number, y: number} | null} place in CSS pixels of the window @param {string} text */
   sayAt(place, text) {
     if (!place) return this.say(text);
     this._read(text);
@@ -35,7 +37,10 @@ export class Notices {
     this._timer = setTimeout(() => (this._beside.hidden = true), SHOWN);
   }
 
-  /** Silent on the screen, heard by screen readers. */
+  /**
+   * Silent on the screen, heard by screen readers.
+   * @param {string} text
+   */
   _read(text) {
     this._live.textContent = text;
   }

@@ -1,6 +1,7 @@
 /**
  * CSS pixels of one unit of drawing: what is drawn grows on large screens as the letters do (html in
  * workbench.css). Measured at the first use, and again whenever the window has another size.
+ * @type {number|null}
  */
 let measured = null;
 

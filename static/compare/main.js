@@ -1,5 +1,5 @@
 import { Api } from "../base/api.js";
-import { element } from "../base/dom.js";
+import { element, required } from "../base/dom.js";
 import { problemWords } from "../base/failure_words.js";
 import { gettext } from "../base/messages.js";
 import { Notices } from "../base/notices.js";
@@ -8,9 +8,13 @@ import { Images } from "../views/images.js";
 import { CompareStore } from "./store.js";
 import { buildViewer } from "./viewer.js";
 
-const root = document.getElementById("viewer");
-const { scene: base, truth, found, frames } = JSON.parse(document.getElementById("comparison").textContent);
-const { home, marks } = document.body.dataset;
+/** @typedef {{scene: string, truth: string, found: string, frames: import("./store.js").Line[]}} Comparison */
+
+const root = required(document, "#viewer", HTMLElement);
+/** @type {Comparison} */
+const comparison = JSON.parse(required(document, "#comparison", HTMLScriptElement).text);
+const { scene: base, truth, found, frames } = comparison;
+const { home = "", marks = "" } = document.body.dataset;
 
 try {
   await start();
@@ -57,7 +61,10 @@ async function start() {
   fetchTables({ api, scene, images }, store.current);
 }
 
-/** The frame looked at first, then those one key away. */
+/**
+ * The frame looked at first, then those one key away.
+ * @param {CompareStore} store @param {Images} images
+ */
 async function look(store, images) {
   const wanted = [store.current, store.neighbour(1), store.neighbour(-1), store.neighbour(1, store.inTime)];
   images.want([...new Set(wanted)]);
@@ -66,6 +73,7 @@ async function look(store, images) {
   }
 }
 
+/** @param {number} number @returns {Promise<import("./store.js").MarkJSON[]>} */
 async function marksOf(number) {
   const response = await fetch(marks.replace("/frames/0/", `/frames/${number}/`), { cache: "no-store" });
   if (!response.ok) throw new Error(gettext("The server did not answer; load the page again."));

@@ -1,9 +1,17 @@
 import { element } from "../base/dom.js";
 import { gettext, ngettext } from "../base/messages.js";
-import { KINDS, signOf } from "./marks.js";
+import { KINDS, ORDER, signOf } from "./marks.js";
+import { sideOf } from "./store.js";
 
-/** The side panel: what the frame's line of the table says, and everybody in it, mistakes first. */
+/**
+ * The side panel: what the frame's line of the table says, and everybody in it, mistakes first.
+ * @typedef {import("./store.js").CompareStore} CompareStore
+ * @typedef {import("./store.js").Mark} Mark
+ */
 export class MarksPanel {
+  /**
+   * @param {CompareStore} store @param {{truth: string, found: string}} names @param {(key: number) => void} select
+   */
   constructor(store, names, select) {
     this._store = store;
     this._names = names;
@@ -18,7 +26,8 @@ export class MarksPanel {
       this._list,
       element("p", { className: "details" }, gettext("Ring: {truth} · dot: {found}", names)),
     );
-    for (const name of ["frame", "marks"]) store.on(name, () => this.show());
+    store.on("frame", () => this.show());
+    store.on("marks", () => this.show());
     store.on("selection", () => this._showSelection());
     this.show();
   }
@@ -26,7 +35,7 @@ export class MarksPanel {
   show() {
     const { line } = this._store;
     this._counts.replaceChildren(
-      ...Object.keys(KINDS).map((kind) => {
+      ...ORDER.map((kind) => {
         const count = kind === "matched" ? line.matched - line.swapped : line[kind];
         return element("span", {}, signOf(kind), ` ${count} ${KINDS[kind].words()}`);
       }),
@@ -35,16 +44,18 @@ export class MarksPanel {
     this._showSelection();
   }
 
+  /** @param {Mark} mark */
   _row(mark) {
     return element(
       "li",
       { role: "option", "data-kind": mark.kind, "data-key": mark.key, onclick: () => this._select(mark.key) },
       signOf(mark.kind),
-      element("span", { className: "number" }, String((mark.truth ?? mark.found).person)),
+      element("span", { className: "number" }, String(sideOf(mark).person)),
       element("span", { className: "state" }, this._told(mark)),
     );
   }
 
+  /** @param {Mark} mark */
   _told({ kind, truth, found, before, distance }) {
     const centimetres = Math.round((distance ?? 0) * 1000) / 10;
     if (kind === "missed") return gettext("missed");
@@ -56,7 +67,7 @@ export class MarksPanel {
 
   _showSelection() {
     for (const row of this._list.children) {
-      const chosen = row.dataset.key === String(this._store.selection);
+      const chosen = row.getAttribute("data-key") === String(this._store.selection);
       row.setAttribute("aria-selected", String(chosen));
       if (chosen) row.scrollIntoView({ block: "nearest" });
     }

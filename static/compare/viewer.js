@@ -11,16 +11,24 @@ import { MarksPanel } from "./panel.js";
 
 /**
  * Builds the page inside `root`: the workbench's panes, with the marks of a comparison instead of people.
- * @param {{store, scene, images, names: {truth: string, found: string}, home: string}} parts
+ * @typedef {import("../views/pane.js").LaidOutPane} LaidOutPane
+ * @typedef {import("./store.js").CompareStore} CompareStore
+ * @typedef {{truth: string, found: string}} Names of the two layers
+ * @typedef {{store: CompareStore, scene: import("../truth/scene.js").Scene, images: import("../views/images.js").Images,
+ *            names: Names, home: string}} Parts
+ * @typedef {Record<string, () => void>} Actions by the key
+ * @param {HTMLElement} root @param {Parts} parts
  */
 export function buildViewer(root, { store, scene, images, names, home }) {
   const panes = new Panes({ scene, store, images, options: startOptions(), people: () => new Map() });
   panes.addExtra((pane) => items(pane, store, panes.options.labelOpacity > 0));
   store.on("marks", () => panes.markPeople());
+  /** @param {number|null} key */
   const choose = (key) => {
     store.select(key);
     panes.zoom(key !== null);
   };
+  /** @type {Actions} */
   const actions = {
     n: () => store.open(store.neighbour(1)),
     p: () => store.open(store.neighbour(-1)),
@@ -43,7 +51,10 @@ export function buildViewer(root, { store, scene, images, names, home }) {
   window.addEventListener("focus", () => images.retryAll());
 }
 
-/** Matched people first: mistakes are never hidden behind them. */
+/**
+ * Matched people first: mistakes are never hidden behind them.
+ * @param {LaidOutPane} pane @param {CompareStore} store @param {boolean} labels
+ */
 function items(pane, store, labels) {
   return store
     .marks()
@@ -52,11 +63,14 @@ function items(pane, store, labels) {
     .reverse();
 }
 
+/** @param {CompareStore} store */
 function following(store) {
+  /** @type {(number|null)[]} */
   const keys = store.marks().map(({ key }) => key);
   return keys.length ? keys[(keys.indexOf(store.selection) + 1) % keys.length] : null;
 }
 
+/** @param {KeyboardEvent} event @param {Actions} actions */
 function onKey(event, actions) {
   const name = chord(event);
   if (!(name in actions)) return;
@@ -64,6 +78,7 @@ function onKey(event, actions) {
   actions[name]();
 }
 
+/** @param {CompareStore} store @param {Actions} actions @param {Names} names @param {string} home */
 function bar(store, actions, names, home) {
   const place = element("span", { className: "place", role: "status" });
   const show = () =>
@@ -77,6 +92,7 @@ function bar(store, actions, names, home) {
     );
   store.on("frame", show);
   show();
+  /** @param {string} key @param {string} words */
   const button = (key, words) =>
     element("button", { type: "button", onclick: () => actions[key]() }, words, " ", element("kbd", {}, key));
   return element(

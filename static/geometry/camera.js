@@ -15,17 +15,28 @@ export const MODELS = ["pinhole"];
  * @property {number[][]} rotation 3×3, world to camera
  * @property {number[]} tvec 3, metres, world to camera
  * @property {number[]} distortion OpenCV's order; zeros for undistorted images
- * @property {string} model what the numbers of distortion mean
+ * @property {string} [model] "pinhole" unless it is said: what the numbers of distortion mean
  * @property {string} grid address of its rectangles, see grid_file.js
+ *
+ * @typedef {import("./lens.js").XY} XY
+ * @typedef {import("./table_camera.js").TableCamera} TableCamera
+ * @typedef {Camera|TableCamera} AnyCamera which of the two, `byTable` says
  */
 
 /** A calibrated static camera. World coordinates are metres, the ground is z = 0, pixels are x right, y down. */
 export class Camera {
   /** @param {CameraJSON} json */
   constructor({ index, name, width, height, matrix, rotation, tvec, distortion }) {
-    Object.assign(this, { index, name, width, height });
-    [this.fx, this.cx] = [matrix[0][0], matrix[0][2]];
-    [this.fy, this.cy] = [matrix[1][1], matrix[1][2]];
+    this.index = index;
+    this.name = name;
+    this.width = width;
+    this.height = height;
+    /** @type {false} */
+    this.byTable = false;
+    this.fx = matrix[0][0];
+    this.cx = matrix[0][2];
+    this.fy = matrix[1][1];
+    this.cy = matrix[1][2];
     this.rotation = Float64Array.from(rotation.flat());
     this.tvec = Float64Array.from(tvec);
     this.lens = distortion.some((value) => value !== 0) ? new Lens(distortion) : null;
@@ -39,25 +50,38 @@ export class Camera {
     this.offset = this.tvec.map((value, axis) => scale[axis] * value);
   }
 
-  /** Direction x/z, y/z of a pixel with the lens taken out, into `out`; false if nothing lands there. */
+  /**
+   * Direction x/z, y/z of a pixel with the lens taken out, into `out`; false if nothing lands there.
+   * @param {number} u @param {number} v @param {XY} out
+   */
   normalise(u, v, out) {
     out.x = (u - this.cx) / this.fx;
     out.y = (v - this.cy) / this.fy;
     return this.lens ? this.lens.undistort(out.x, out.y, out) : true;
   }
 
-  /** World coordinates along the ray of a direction, for one unit of depth. */
+  /**
+   * World coordinates along the ray of a direction, for one unit of depth.
+   * @param {number} x @param {number} y
+   */
   ray(x, y) {
     return [0, 1, 2].map((axis) => this._turnedBack(x, y, 1, axis));
   }
 
-  /** A world point in camera axes, [x, y, depth]. */
+  /**
+   * A world point in camera axes, [x, y, depth].
+   * @param {number} x @param {number} y @param {number} z
+   */
   seen(x, y, z) {
     const [r, t] = [this.rotation, this.tvec];
     return [0, 1, 2].map((axis) => r[3 * axis] * x + r[3 * axis + 1] * y + r[3 * axis + 2] * z + t[axis]);
   }
 
-  /** Pixel of a direction, into `out`. */
+  /**
+   * Pixel of a direction, into `out`.
+   * @template {XY} Into
+   * @param {number} x @param {number} y @param {Into} out
+   */
   pixel(x, y, out) {
     out.x = x;
     out.y = y;
@@ -67,6 +91,7 @@ export class Camera {
     return out;
   }
 
+  /** @param {number} x @param {number} y @param {number} z @param {number} axis */
   _turnedBack(x, y, z, axis) {
     return this.rotation[axis] * x + this.rotation[axis + 3] * y + this.rotation[axis + 6] * z;
   }
@@ -75,8 +100,9 @@ export class Camera {
 /**
  * Pixel of a world point in metres; null behind the camera and where the lens model folds back.
  *
- * @param {Camera} camera or a TableCamera
- * @returns {{x: number, y: number}|null}
+ * @param {AnyCamera} camera
+ * @param {number} x @param {number} y @param {number} [z]
+ * @returns {XY|null}
  */
 export function project(camera, x, y, z = 0) {
   if (camera.byTable) return camera.toPixel(x, y, z);
@@ -90,8 +116,9 @@ export function project(camera, x, y, z = 0) {
 /**
  * World point in metres that a pixel shows at height `z`, the inverse of `project`; null above the horizon.
  *
- * @param {Camera} camera
- * @returns {{x: number, y: number}|null}
+ * @param {AnyCamera} camera
+ * @param {number} u @param {number} v @param {number} [z]
+ * @returns {XY|null}
  */
 export function backProject(camera, u, v, z = 0) {
   if (camera.byTable) return camera.toGround(u, v, z);

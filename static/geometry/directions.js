@@ -1,10 +1,25 @@
-/** Which way on the ground is Left, Right, Up, Down on the screen. */
+/**
+ * Which way on the ground is Left, Right, Up, Down on the screen.
+ * @typedef {import("./camera.js").AnyCamera} AnyCamera
+ * @typedef {{columns: number, rows: number}} Step
+ * @typedef {"left"|"right"|"up"|"down"} Key
+ * @typedef {Record<Key, Step>} Axes what each arrow key does
+ * @typedef {Step & import("./lens.js").XY} ScreenStep with its direction on the screen
+ */
 import { project } from "./camera.js";
 
 const REACH = 0.05; // metres to either side from which a direction is measured
 
-/** Left, Right, Up, Down as unit vectors on the screen, where y points down. */
-const KEYS = { left: [-1, 0], right: [1, 0], up: [0, -1], down: [0, 1] };
+/**
+ * Left, Right, Up, Down as unit vectors on the screen, where y points down.
+ * @type {[Key, number, number][]}
+ */
+const KEYS = [
+  ["left", -1, 0],
+  ["right", 1, 0],
+  ["up", 0, -1],
+  ["down", 0, 1],
+];
 
 /** The eight ways to lay the ground's axes on the screen's: a quarter turn, maybe mirrored. */
 const LAYOUTS = [
@@ -20,14 +35,15 @@ const LAYOUTS = [
 /**
  * Where the four steps on the ground lead on the screen, seen at a ground point.
  *
- * @param {import("./camera.js").Camera} camera
- * @returns {{columns: number, rows: number, x: number, y: number}[]|null} one unit vector (x, y) in pixels for
+ * @param {AnyCamera} camera @param {number} x @param {number} y
+ * @returns {ScreenStep[]|null} one unit vector (x, y) in pixels for
  *   each of +column, -column, +row, -row; null where the point is not in front of the camera
  */
 export function screenStep(camera, x, y) {
   const alongColumns = direction(camera, x, y, REACH, 0);
   const alongRows = direction(camera, x, y, 0, REACH);
   if (!alongColumns || !alongRows) return null;
+  /** @type {ScreenStep[]} */
   const steps = [];
   for (const sign of [1, -1])
     steps.push({ columns: sign, rows: 0, x: sign * alongColumns.x, y: sign * alongColumns.y });
@@ -39,8 +55,8 @@ export function screenStep(camera, x, y) {
  * What each arrow key does at a ground point: the layout whose four steps together come closest to the keys, so
  * every step has one key and opposite keys undo each other.
  *
- * @returns {{left: Step, right: Step, up: Step, down: Step}|null} null where the point is not in front
- * @typedef {{columns: number, rows: number}} Step
+ * @param {AnyCamera} camera @param {number} x @param {number} y
+ * @returns {Axes|null} null where the point is not in front
  */
 export function screenAxes(camera, x, y) {
   const steps = screenStep(camera, x, y);
@@ -49,20 +65,26 @@ export function screenAxes(camera, x, y) {
   return LAYOUTS[scores.indexOf(Math.max(...scores))];
 }
 
+/** @param {Step} right @param {Step} up @returns {Axes} */
 function layout(right, up) {
+  /** @param {Step} step */
   const opposite = ({ columns, rows }) => ({ columns: 0 - columns, rows: 0 - rows });
   return { left: opposite(right), right, up, down: opposite(up) };
 }
 
-/** Sum of the cosines between keys and the steps they make. */
+/**
+ * Sum of the cosines between keys and the steps they make.
+ * @param {Axes} candidate @param {ScreenStep[]} steps
+ */
 function agreement(candidate, steps) {
-  return Object.entries(KEYS).reduce((sum, [key, [keyX, keyY]]) => {
+  return KEYS.reduce((sum, [key, keyX, keyY]) => {
     const { columns, rows } = candidate[key];
     const step = steps.find((each) => each.columns === columns && each.rows === rows);
-    return sum + keyX * step.x + keyY * step.y;
+    return step ? sum + keyX * step.x + keyY * step.y : sum;
   }, 0);
 }
 
+/** @param {AnyCamera} camera @param {number} x @param {number} y @param {number} reachX @param {number} reachY */
 function direction(camera, x, y, reachX, reachY) {
   if (camera.byTable) return camera.direction(x, y, reachX ? 0 : 1);
   const [before, after] = [project(camera, x - reachX, y - reachY), project(camera, x + reachX, y + reachY)];

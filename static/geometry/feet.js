@@ -5,18 +5,23 @@ const CELL = 8; // pixels along each side of a bucket
 /**
  * @typedef {{boxes: Int16Array, feet: Int16Array, width: number, height: number}} Feet see grid_file.js; `width` and
  *   `height` of the picture
- * @typedef {{starts: Uint32Array, members: Uint32Array}} FootIndex positions, bucket by bucket
+ * @typedef {{starts: Uint32Array<ArrayBuffer>, members: Uint32Array<ArrayBuffer>}} FootIndex positions, bucket by bucket
  */
 
-/** Pixel x of the foot of whoever stands on a visible position. @param {Feet} table */
+/**
+ * Pixel x of the foot of whoever stands on a visible position.
+ * @param {Feet} table @param {number} position
+ */
 export function footX({ feet }, position) {
   return feet[2 * position] / 4;
 }
 
+/** @param {Feet} table @param {number} position */
 export function footY({ feet }, position) {
   return feet[2 * position + 1] / 4;
 }
 
+/** @param {Feet} table @param {number} position */
 export function isVisible({ boxes }, position) {
   return boxes[4 * position + 2] > 0;
 }
@@ -35,7 +40,7 @@ export function indexFeet(table) {
     starts[cells[position] + 1] += 1;
   }
   for (let cell = 1; cell < starts.length; cell += 1) starts[cell] += starts[cell - 1];
-  const members = new Uint32Array(starts.at(-1));
+  const members = new Uint32Array(starts[starts.length - 1]);
   const next = starts.slice();
   for (let position = 0; position < count; position += 1) {
     if (cells[position] >= 0) members[next[cells[position]]++] = position;
@@ -46,14 +51,17 @@ export function indexFeet(table) {
 /**
  * The visible position whose foot is nearest to a pixel.
  *
- * @param {Feet} table @param {FootIndex} index @param {number} reach pixels
+ * @param {Feet} table @param {FootIndex} index
+ * @param {number} x @param {number} y @param {number} reach pixels
  * @returns {number|null} null when there is none within reach
  */
 export function nearestFoot(table, index, x, y, reach) {
   const across = Math.ceil(table.width / CELL);
   const down = Math.ceil(table.height / CELL);
   const [column, row] = [Math.floor(x / CELL), Math.floor(y / CELL)];
-  let [found, best] = [null, reach * reach];
+  /** @type {number|null} */
+  let found = null;
+  let best = reach * reach;
   for (let ring = 0; ring * CELL <= Math.sqrt(best) + CELL; ring += 1) {
     for (let r = Math.max(row - ring, 0); r <= Math.min(row + ring, down - 1); r += 1) {
       const whole = Math.abs(r - row) === ring;

@@ -1,6 +1,9 @@
-/** The positions people can stand on. A position's id is `row * columns + column`; columns run along x. */
+/**
+ * The positions people can stand on. A position's id is `row * columns + column`; columns run along x.
+ * @typedef {{columns: number, rows: number, step: number, origin: number[]}} GridJSON metres
+ */
 export class Grid {
-  /** @param {{columns: number, rows: number, step: number, origin: number[]}} json metres */
+  /** @param {GridJSON} json */
   constructor({ columns, rows, step, origin }) {
     this.columns = columns;
     this.rows = rows;

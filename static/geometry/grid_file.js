@@ -4,9 +4,11 @@ const MAGIC = "GTMGRID1";
 const HEAD = 32; // bytes
 const EXCEPTION = 255;
 
+/** @typedef {{columns: number, rows: number, boxes: Int16Array<ArrayBuffer>, feet: Int16Array<ArrayBuffer>|null}} GridFile */
+
 /**
  * @param {ArrayBuffer} buffer the unpacked file
- * @returns {{columns: number, rows: number, boxes: Int16Array, feet: Int16Array|null}} `boxes`: xmin, ymin, xmax, ymax
+ * @returns {GridFile} `boxes`: xmin, ymin, xmax, ymax
  *   of position 0, then of position 1 …; `feet`: x and y in quarters of a pixel; all 0 where not visible
  */
 export function decodeGrid(buffer) {
@@ -20,15 +22,20 @@ export function decodeGrid(buffer) {
   const boxes = new Int16Array(4 * columns * rows);
   const feet = count === 6 ? new Int16Array(2 * columns * rows) : null;
   let exception = 0;
-  for (let number = 0; number < count; number += 1) {
+  const targets = [0, 1, 2, 3].map((number) => ({ values: boxes, width: 4, number }));
+  if (feet) targets.push({ values: feet, width: 2, number: 0 }, { values: feet, width: 2, number: 1 });
+  targets.forEach((into, number) => {
     const plane = new Uint8Array(buffer, planes + number * visible, visible);
-    const into = number < 4 ? { values: boxes, width: 4, number } : { values: feet, width: 2, number: number - 4 };
     exception = fill(into, columns, runs, plane, exceptions, exception);
-  }
+  });
   return { columns, rows, boxes, feet };
 }
 
-/** Every `width`-th of the values, from `number` on, out of one plane; returns the next exception. */
+/**
+ * Every `width`-th of the values, from `number` on, out of one plane; returns the next exception.
+ * @param {{values: Int16Array, width: number, number: number}} into @param {number} columns of the grid
+ * @param {Uint32Array} runs @param {Uint8Array} plane @param {Uint32Array} exceptions @param {number} exception
+ */
 function fill({ values, width, number }, columns, runs, plane, exceptions, exception) {
   const above = width * columns; // where not visible, and before the first row, there is nothing but 0
   let [position, at] = [0, 0];

@@ -3,6 +3,12 @@
  *
  * gtm_hit/geometry/rectangle_rule.py has the same rule for blocks of ground: the precision, the order of
  * operations and the place of every truncation are part of it, and results are identical. Change both or neither.
+ *
+ * @typedef {import("./camera.js").Camera} Camera
+ * @typedef {import("./grid.js").Grid} Grid
+ * @typedef {{radius: number, height: number}} Cylinder metres
+ * @typedef {"corners"|"centre"} FootRule of a dataset
+ * @typedef {{xmin: number, ymin: number, xmax: number, ymax: number}} Rectangle pixels
  */
 import { Point } from "./lens.js";
 
@@ -19,33 +25,41 @@ const box = new Float64Array(4);
 /**
  * Rectangle of a cylinder standing on a position, never clipped to the image; null where not visible.
  *
- * @param {import("./camera.js").Camera} camera
- * @param {import("./grid.js").Grid} grid
- * @param {{radius: number, height: number}} cylinder metres
- * @param {"corners"|"centre"} rule the dataset's foot rule
+ * @param {Camera} camera @param {Grid} grid @param {Cylinder} cylinder @param {FootRule} rule
  * @param {number} position
- * @returns {{xmin: number, ymin: number, xmax: number, ymax: number}|null}
+ * @returns {Rectangle|null}
  */
 export function rectangle(camera, grid, cylinder, rule, position) {
   if (!rectangleInto(box, camera, grid, cylinder, rule, position)) return null;
   return { xmin: box[0], ymin: box[1], xmax: box[2], ymax: box[3] };
 }
 
-/** The rectangle that a camera's table has for a position: what the rule gives for the usual person. */
+/**
+ * The rectangle that a camera's table has for a position: what the rule gives for the usual person.
+ * @param {Int16Array} boxes @param {number} position @returns {Rectangle|null}
+ */
 export function rectangleIn(boxes, position) {
   const at = 4 * position;
   if (!(boxes[at + 2] > 0)) return null;
   return { xmin: boxes[at], ymin: boxes[at + 1], xmax: boxes[at + 2], ymax: boxes[at + 3] };
 }
 
-/** What `rectangle` gives into `out` (xmin, ymin, xmax, ymax), without allocating; false, and `out` unspecified, if not visible. */
+/**
+ * What `rectangle` gives into `out` (xmin, ymin, xmax, ymax), without allocating; false, and `out` unspecified, if not visible.
+ * @param {Float64Array} out @param {Camera} camera @param {Grid} grid @param {Cylinder} cylinder
+ * @param {FootRule} rule @param {number} position
+ */
 export function rectangleInto(out, camera, grid, cylinder, rule, position) {
   if (rule === "corners") return cornersRule(out, camera, grid, cylinder, position);
   if (rule === "centre") return centreRule(out, camera, grid, cylinder, position);
   throw new TypeError(`foot rule must be "corners" or "centre", not ${rule}`);
 }
 
-/** WILDTRACK's: float32, truncated corner by corner, foot = mean of the four lowest corners. */
+/**
+ * WILDTRACK's: float32, truncated corner by corner, foot = mean of the four lowest corners.
+ * @param {Float64Array} out @param {Camera} camera @param {Grid} grid @param {Cylinder} cylinder
+ * @param {number} position
+ */
 function cornersRule(out, camera, grid, cylinder, position) {
   const f = Math.fround;
   const row = Math.floor(position / grid.columns);
@@ -69,7 +83,11 @@ function cornersRule(out, camera, grid, cylinder, position) {
   return acceptable(out, camera) && out[2] - out[0] <= Math.floor(camera.width / 3);
 }
 
-/** MultiviewX's: float64, truncated last, foot = the projected ground centre. */
+/**
+ * MultiviewX's: float64, truncated last, foot = the projected ground centre.
+ * @param {Float64Array} out @param {Camera} camera @param {Grid} grid @param {Cylinder} cylinder
+ * @param {number} position
+ */
 function centreRule(out, camera, grid, cylinder, position) {
   const row = Math.floor(position / grid.columns);
   const column = position - row * grid.columns;
@@ -89,6 +107,7 @@ function centreRule(out, camera, grid, cylinder, position) {
   return true;
 }
 
+/** @param {number} lowX @param {number} highX @param {number} lowY @param {number} highY */
 function setSides(lowX, highX, lowY, highY) {
   sidesX[0] = lowX;
   sidesX[1] = highX;
@@ -96,7 +115,10 @@ function setSides(lowX, highX, lowY, highY) {
   sidesY[1] = highY;
 }
 
-/** Pixels of the four feet corners, then of the four heads, into `u` and `v`. */
+/**
+ * Pixels of the four feet corners, then of the four heads, into `u` and `v`.
+ * @param {Camera} camera @param {number} height
+ */
 function projectCorners(camera, height) {
   for (let corner = 0; corner < 8; corner += 1) {
     toPixel(camera, sidesX[corner & 1], sidesY[(corner >> 1) & 1], corner < 4 ? 0 : height);
@@ -105,7 +127,10 @@ function projectCorners(camera, height) {
   }
 }
 
-/** Pixel of a world point, into `pixel`; the sums are made axis by axis, as on a grid. */
+/**
+ * Pixel of a world point, into `pixel`; the sums are made axis by axis, as on a grid.
+ * @param {Camera} camera @param {number} x @param {number} y @param {number} z
+ */
 function toPixel(camera, x, y, z) {
   const m = camera.terms;
   const t = camera.offset;
@@ -120,12 +145,16 @@ function toPixel(camera, x, y, z) {
   }
 }
 
+/** @param {Camera} camera @param {number} x @param {number} y @param {number} z */
 function axisHeight(camera, x, y, z) {
   toPixel(camera, x, y, z);
   return pixel.y;
 }
 
-/** All eight corners on one side of the camera plane, and the head above the feet. */
+/**
+ * All eight corners on one side of the camera plane, and the head above the feet.
+ * @param {Camera} camera @param {number} x @param {number} y @param {number} height
+ */
 function inFront(camera, x, y, height) {
   const m = camera.terms;
   const offset = camera.offset[2];
@@ -140,7 +169,10 @@ function inFront(camera, x, y, height) {
   return axisHeight(camera, x, y, height) < axisHeight(camera, x, y, 0);
 }
 
-/** The tests both foot rules share. */
+/**
+ * The tests both foot rules share.
+ * @param {Float64Array} sides @param {Camera} camera
+ */
 function acceptable(sides, camera) {
   const xmin = sides[0];
   const ymin = sides[1];
@@ -151,19 +183,24 @@ function acceptable(sides, camera) {
   return inside && fits && xmax - xmin <= ymax - ymin;
 }
 
+/** @param {Float64Array} values */
 function smallest(values) {
   let found = values[0];
   for (let index = 1; index < 8; index += 1) found = Math.min(found, values[index]);
   return found;
 }
 
+/** @param {Float64Array} values */
 function largest(values) {
   let found = values[0];
   for (let index = 1; index < 8; index += 1) found = Math.max(found, values[index]);
   return found;
 }
 
-/** Insertion sort, ascending: heads mostly lie above feet already. */
+/**
+ * Insertion sort, ascending: heads mostly lie above feet already.
+ * @param {Float64Array} values
+ */
 function sortEight(values) {
   for (let index = 1; index < 8; index += 1) {
     const value = values[index];

@@ -10,6 +10,11 @@ const PIECE = 0.25; // metres, of a line that is drawn
 const REMEMBERED = 4000; // places
 
 /**
+ * @typedef {import("./lens.js").XY} XY
+ * @typedef {{boxes: Int16Array, feet: Int16Array, index: import("./feet.js").FootIndex}} Table
+ */
+
+/**
  * A camera whose model only the server knows: what it sees is read off its table of rectangles. A place is seen where
  * the feet around it say, by the plane that fits them best: that evens out the table's rounding, and reaches a
  * little beyond where somebody is visible. Heights other than the ground are not in the table.
@@ -18,66 +23,95 @@ export class TableCamera {
   /**
    * @param {import("./camera.js").CameraJSON} json
    * @param {import("./grid.js").Grid} grid
-   * @param {{boxes: Int16Array, feet: Int16Array, index: import("./feet.js").FootIndex}} table
+   * @param {Table} table
    */
   constructor({ name, width, height, rotation, tvec, index: number }, grid, { boxes, feet, index }) {
-    Object.assign(this, { index: number, name, width, height, byTable: true });
+    this.index = number;
+    this.name = name;
+    this.width = width;
+    this.height = height;
+    /** @type {true} */
+    this.byTable = true;
     this.centre = [0, 1, 2].map(
       (axis) => -(rotation[0][axis] * tvec[0] + rotation[1][axis] * tvec[1] + rotation[2][axis] * tvec[2]),
     );
     this._grid = grid;
     this._feet = { boxes, feet, width, height };
     this._index = index;
+    /** @type {Map<string, Plane|null>} */
     this._fits = new Map();
   }
 
-  /** Pixel of a ground point in metres; null where nobody would be seen, and at other heights. */
+  /**
+   * Pixel of a ground point in metres; null where nobody would be seen, and at other heights.
+   * @param {number} x @param {number} y @param {number} [z] @returns {XY|null}
+   */
   toPixel(x, y, z = 0) {
     const [column, row] = this._cells(x, y);
-    const fit = z === 0 && this._fit(column, row);
+    const fit = z === 0 ? this._fit(column, row) : null;
     return fit ? fit.at(column, row) : null;
   }
 
-  /** Ground point in metres whose feet a pixel shows; null where no foot is near, and at other heights. */
+  /**
+   * Ground point in metres whose feet a pixel shows; null where no foot is near, and at other heights.
+   * @param {number} u @param {number} v @param {number} [z] @returns {XY|null}
+   */
   toGround(u, v, z = 0) {
     const nearest = z === 0 ? nearestFoot(this._feet, this._index, u, v, REACH) : null;
     if (nearest === null) return null;
-    let place = [nearest % this._grid.columns, Math.floor(nearest / this._grid.columns)];
+    let [column, row] = [nearest % this._grid.columns, Math.floor(nearest / this._grid.columns)];
     for (let step = 0; step < STEPS; step += 1) {
-      const next = this._fit(...place)?.inverse(u, v);
-      if (!next || !this._fit(...next)) break;
-      place = next;
+      const next = this._fit(column, row)?.inverse(u, v);
+      if (!next || !this._fit(next[0], next[1])) break;
+      [column, row] = next;
     }
     const { origin, extent, columns, rows } = this._grid;
-    return { x: origin[0] + (place[0] * extent[0]) / columns, y: origin[1] + (place[1] * extent[1]) / rows };
+    return { x: origin[0] + (column * extent[0]) / columns, y: origin[1] + (row * extent[1]) / rows };
   }
 
-  /** Which way on the screen the ground's x (axis 0) or y (axis 1) leads, as a unit vector; null where unknown. */
+  /**
+   * Which way on the screen the ground's x (axis 0) or y (axis 1) leads, as a unit vector; null where unknown.
+   * @param {number} x @param {number} y @param {0|1} axis @returns {XY|null}
+   */
   direction(x, y, axis) {
-    const fit = this._fit(...this._cells(x, y));
+    const [column, row] = this._cells(x, y);
+    const fit = this._fit(column, row);
     const [right, down] = fit ? fit.slopes[axis] : [0, 0];
     const length = Math.hypot(right, down);
     return length > 0 ? { x: right / length, y: down / length } : null;
   }
 
-  /** The straight line between two ground points, as far as feet are seen along it. @returns {{x, y}[][]} polylines */
+  /**
+   * The straight line between two ground points, as far as feet are seen along it.
+   * @param {number} x1 @param {number} y1 @param {number} x2 @param {number} y2
+   * @returns {XY[][]} polylines
+   */
   line(x1, y1, x2, y2) {
     const pieces = Math.max(1, Math.ceil(Math.hypot(x2 - x1, y2 - y1) / PIECE));
-    const lines = [[]];
+    /** @type {XY[]} */
+    let line = [];
+    const lines = [line];
     for (let piece = 0; piece <= pieces; piece += 1) {
       const share = piece / pieces;
       const pixel = this.toPixel(x1 + (x2 - x1) * share, y1 + (y2 - y1) * share);
-      if (pixel) lines.at(-1).push(pixel);
-      else if (lines.at(-1).length) lines.push([]);
+      if (pixel) line.push(pixel);
+      else if (line.length) {
+        line = [];
+        lines.push(line);
+      }
     }
-    return lines.filter((line) => line.length > 1);
+    return lines.filter(({ length }) => length > 1);
   }
 
   /** Corners of the ground whose feet are inside the picture, metres: row by row its ends. */
   outline() {
     const { columns, rows } = this._grid;
-    const [lefts, rights] = [[], []];
+    /** @type {XY[]} */
+    const lefts = [];
+    /** @type {XY[]} */
+    const rights = [];
     for (let row = 0; row < rows; row += 1) {
+      /** @param {number} column */
       const seen = (column) => this._isInPicture(row * columns + column);
       let [left, right] = [0, columns - 1];
       while (left < columns && !seen(left)) left += 1;
@@ -89,29 +123,40 @@ export class TableCamera {
     return [...lefts, ...rights];
   }
 
+  /** @param {number} position */
   _isInPicture(position) {
     const [x, y] = [footX(this._feet, position), footY(this._feet, position)];
     return isVisible(this._feet, position) && x >= 0 && y >= 0 && x < this.width && y < this.height;
   }
 
-  /** Columns and rows of a ground point, with their fractions. */
+  /**
+   * Columns and rows of a ground point, with their fractions.
+   * @param {number} x @param {number} y
+   */
   _cells(x, y) {
     const { origin, step } = this._grid;
     return [(x - origin[0]) / step, (y - origin[1]) / step];
   }
 
-  /** The plane of the feet around a place, from the narrowest window that tells directions apart; null: unknown. */
+  /**
+   * The plane of the feet around a place, from the narrowest window that tells directions apart; null: unknown.
+   * @param {number} column @param {number} row @returns {Plane|null}
+   */
   _fit(column, row) {
     const [c, r] = [Math.round(column), Math.round(row)];
     const key = `${c} ${r}`;
-    if (!this._fits.has(key)) {
+    let fit = this._fits.get(key);
+    if (fit === undefined) {
       if (this._fits.size > REMEMBERED) this._fits.clear();
-      this._fits.set(key, this._search(c, r));
+      fit = this._search(c, r);
+      this._fits.set(key, fit);
     }
-    return this._fits.get(key);
+    return fit;
   }
 
+  /** @param {number} column @param {number} row */
   _search(column, row) {
+    /** @type {Plane|null} */
     let found = null;
     for (const reach of [...NARROW, ...WIDE]) {
       if (!found && WIDE.includes(reach)) return null;
@@ -121,8 +166,10 @@ export class TableCamera {
     return found;
   }
 
+  /** @param {number} column @param {number} row @param {number} reach */
   _plane(column, row, reach) {
     const { columns, rows } = this._grid;
+    /** @type {number[][]} */
     const samples = [];
     for (let r = row - reach; r <= row + reach; r += reach / SAMPLES) {
       for (let c = column - reach; c <= column + reach; c += reach / SAMPLES) {
@@ -137,15 +184,24 @@ export class TableCamera {
 
 /** Pixels as a linear function of columns and rows. */
 class Plane {
+  /**
+   * @param {number[]} middle [column, row, u, v]
+   * @param {number[][]} slopes [[u, v] per column, [u, v] per row]
+   */
   constructor(middle, slopes) {
-    this.middle = middle; // [column, row, u, v]
-    this.slopes = slopes; // [[u, v] per column, [u, v] per row]
+    this.middle = middle;
+    this.slopes = slopes;
   }
 
-  /** The one that fits best, by least squares; null when the samples lie on one line. */
+  /**
+   * The one that fits best, by least squares; null when the samples lie on one line.
+   * @param {number[][]} samples [column, row, u, v]
+   */
   static through(samples) {
+    /** @param {number[]} values */
     const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
     const middle = [0, 1, 2, 3].map((axis) => mean(samples.map((one) => one[axis])));
+    /** @param {number} one @param {number} other */
     const together = (one, other) =>
       mean(samples.map((sample) => (sample[one] - middle[one]) * (sample[other] - middle[other])));
     const [cc, cr, rr] = [together(0, 0), together(0, 1), together(1, 1)];
@@ -158,19 +214,26 @@ class Plane {
     return new Plane(middle, [along.map(([c]) => c), along.map(([, r]) => r)]);
   }
 
-  /** Whether feet lie so far apart across a window that pixels tell both directions. */
+  /**
+   * Whether feet lie so far apart across a window that pixels tell both directions.
+   * @param {number} reach
+   */
   tells(reach) {
     const lengths = this.slopes.map(([u, v]) => Math.hypot(u, v) * reach);
     return Math.min(...lengths) >= TOLD && Math.abs(this._determinant()) * reach * reach >= TOLD * TOLD;
   }
 
+  /** @param {number} column @param {number} row */
   at(column, row) {
     const [c, r] = [column - this.middle[0], row - this.middle[1]];
     const [x, y] = [0, 1].map((axis) => this.middle[2 + axis] + this.slopes[0][axis] * c + this.slopes[1][axis] * r);
     return { x, y };
   }
 
-  /** [column, row] of a pixel; null where the feet lie on one line. */
+  /**
+   * [column, row] of a pixel; null where the feet lie on one line.
+   * @param {number} u @param {number} v
+   */
   inverse(u, v) {
     const determinant = this._determinant();
     if (!(Math.abs(determinant) > 1e-9)) return null;

@@ -1,15 +1,25 @@
-/** One ground point from clicks in several views. */
+/**
+ * One ground point from clicks in several views.
+ * @typedef {import("./camera.js").AnyCamera} AnyCamera
+ * @typedef {import("./lens.js").XY} XY
+ * @typedef {{camera: AnyCamera, u: number, v: number, z?: number}} Click `z`: metres above the ground point of what
+ *   was clicked on; 0 is the feet
+ * @typedef {XY & {residuals: number[]}} Intersection metres, and how far each click is off in pixels
+ * @typedef {XY & {misses: XY[], cost: number}} Candidate misses in pixels, and their sum of squares
+ */
 import { backProject, project } from "./camera.js";
 
 const STEPS = 30;
 const SMALL = 1e-4; // metres
 const CONVERGED = 1e-9; // metres
+const AXES = /** @type {const} */ (["x", "y"]);
 
 /**
  * The ground point that two clicks show: the least squares of the distances in pixels in both views.
  *
- * @returns {{x: number, y: number, residuals: number[]}|null} metres, and how far each click is off in pixels;
- *   null when neither click meets the ground, or the point is not in front of both cameras
+ * @param {AnyCamera} camera1 @param {number} u1 @param {number} v1
+ * @param {AnyCamera} camera2 @param {number} u2 @param {number} v2
+ * @returns {Intersection|null} null when neither click meets the ground, or the point is not in front of both cameras
  */
 export function intersectRays(camera1, u1, v1, camera2, u2, v2) {
   return groundPoint([
@@ -21,8 +31,8 @@ export function intersectRays(camera1, u1, v1, camera2, u2, v2) {
 /**
  * The same for any number of clicks, by damped Gauss-Newton from the best single click.
  *
- * @param {{camera: import("./camera.js").Camera, u: number, v: number, z?: number}[]} clicks `z`: metres above the
- *   ground point of what was clicked on; 0 is the feet
+ * @param {Click[]} clicks
+ * @returns {Intersection|null}
  */
 export function groundPoint(clicks) {
   let best = startingPoint(clicks);
@@ -42,33 +52,48 @@ export function groundPoint(clicks) {
   return best && { x: best.x, y: best.y, residuals: best.misses.map(({ x, y }) => Math.hypot(x, y)) };
 }
 
+/** @param {Click[]} clicks @returns {Candidate|null} */
 function startingPoint(clicks) {
-  return clicks
-    .map(({ camera, u, v, z }) => backProject(camera, u, v, z))
-    .map((ground) => ground && evaluated(clicks, ground.x, ground.y))
-    .filter(Boolean)
-    .reduce((best, candidate) => (best && best.cost <= candidate.cost ? best : candidate), null);
+  /** @type {Candidate|null} */
+  let best = null;
+  for (const { camera, u, v, z } of clicks) {
+    const ground = backProject(camera, u, v, z);
+    const candidate = ground && evaluated(clicks, ground.x, ground.y);
+    if (candidate && !(best && best.cost <= candidate.cost)) best = candidate;
+  }
+  return best;
 }
 
-/** A ground point with its misses in pixels and their sum of squares; null when a view cannot show it. */
+/**
+ * A ground point with its misses in pixels and their sum of squares; null when a view cannot show it.
+ * @param {Click[]} clicks @param {number} x @param {number} y @returns {Candidate|null}
+ */
 function evaluated(clicks, x, y) {
   const misses = missesAt(clicks, x, y);
   return misses && { x, y, misses, cost: misses.reduce((sum, miss) => sum + miss.x ** 2 + miss.y ** 2, 0) };
 }
 
+/** @param {Click[]} clicks @param {number} x @param {number} y @returns {XY[]|null} */
 function missesAt(clicks, x, y) {
-  const seen = clicks.map(({ camera, z }) => project(camera, x, y, z));
-  if (seen.includes(null)) return null;
-  return seen.map((point, index) => ({ x: point.x - clicks[index].u, y: point.y - clicks[index].v }));
+  const misses = [];
+  for (const { camera, u, v, z } of clicks) {
+    const point = project(camera, x, y, z);
+    if (!point) return null;
+    misses.push({ x: point.x - u, y: point.y - v });
+  }
+  return misses;
 }
 
-/** Solves the 2×2 normal equations with the damping of Levenberg and Marquardt. */
+/**
+ * Solves the 2×2 normal equations with the damping of Levenberg and Marquardt.
+ * @param {Click[]} clicks @param {Candidate} from @param {number} damping @returns {XY|null}
+ */
 function newtonMove(clicks, { x, y, misses }, damping) {
   const [byX, byY] = [missesAt(clicks, x + SMALL, y), missesAt(clicks, x, y + SMALL)];
   if (!byX || !byY) return null;
   let [xx, xy, yy, gx, gy] = [0, 0, 0, 0, 0];
   misses.forEach((miss, index) => {
-    for (const axis of ["x", "y"]) {
+    for (const axis of AXES) {
       const slopeX = (byX[index][axis] - miss[axis]) / SMALL;
       const slopeY = (byY[index][axis] - miss[axis]) / SMALL;
       xx += slopeX * slopeX;

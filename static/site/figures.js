@@ -2,16 +2,21 @@
 
 const SCALE = 3;
 
-for (const figure of document.querySelectorAll("figure[data-figure]")) {
+/** @type {NodeListOf<HTMLElement>} */
+const figures = document.querySelectorAll("figure[data-figure]");
+
+for (const figure of figures) {
+  /** @type {HTMLButtonElement|null} */
   const button = figure.querySelector("[data-png]");
+  const svg = figure.querySelector("svg");
+  if (!button || !svg) continue;
   button.hidden = false;
-  button.addEventListener("click", async () =>
-    save(await png(figure.querySelector("svg")), `${figure.dataset.figure}.png`),
-  );
+  button.addEventListener("click", async () => save(await png(svg), `${figure.dataset.figure}.png`));
 }
 
+/** @param {SVGSVGElement} svg */
 async function png(svg) {
-  const copy = svg.cloneNode(true);
+  const copy = /** @type {SVGSVGElement} */ (svg.cloneNode(true));
   copy.setAttribute("color", "#000"); // what currentColor means on paper
   const source = new Blob([new XMLSerializer().serializeToString(copy)], { type: "image/svg+xml" });
   const address = URL.createObjectURL(source);
@@ -22,6 +27,7 @@ async function png(svg) {
     const { width, height } = svg.viewBox.baseVal;
     const canvas = new OffscreenCanvas(Math.round(width * SCALE), Math.round(height * SCALE));
     const ctx = canvas.getContext("2d");
+    if (!ctx) throw new Error("this browser cannot draw");
     ctx.fillStyle = "#fff";
     ctx.fillRect(0, 0, canvas.width, canvas.height);
     ctx.drawImage(picture, 0, 0, canvas.width, canvas.height);
@@ -31,6 +37,7 @@ async function png(svg) {
   }
 }
 
+/** @param {Blob} blob @param {string} name */
 function save(blob, name) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
@@ -38,3 +45,5 @@ function save(blob, name) {
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
+
+export {}; // a module: its names are its own

@@ -2,18 +2,23 @@
 (() => {
   const KEY = "gtm-theme";
   const THEMES = ["dark", "light", "system"];
+  const DARK = THEMES[0];
+  const root = document.documentElement;
 
   const read = () => {
     try {
-      const stored = localStorage.getItem(KEY);
-      return THEMES.includes(stored) ? stored : "dark";
+      const stored = localStorage.getItem(KEY) ?? DARK;
+      return THEMES.includes(stored) ? stored : DARK;
     } catch {
-      return "dark"; // storage may be forbidden
+      return DARK; // storage may be forbidden
     }
   };
 
+  const shown = () => root.dataset.theme ?? DARK;
+
+  /** @param {string} theme */
   const write = (theme) => {
-    document.documentElement.dataset.theme = theme;
+    root.dataset.theme = theme;
     try {
       localStorage.setItem(KEY, theme);
     } catch {
@@ -21,18 +26,19 @@
     }
   };
 
-  document.documentElement.dataset.theme = read();
+  root.dataset.theme = read();
 
   document.addEventListener("DOMContentLoaded", () => {
+    /** @type {HTMLButtonElement|null} */
     const button = document.querySelector("[data-theme-button]");
     if (!button) return;
     const show = () => {
-      button.textContent = button.dataset[document.documentElement.dataset.theme];
+      button.textContent = button.dataset[shown()] ?? "";
     };
     button.hidden = false;
     show();
     button.addEventListener("click", () => {
-      const now = THEMES.indexOf(document.documentElement.dataset.theme);
+      const now = THEMES.indexOf(shown());
       write(THEMES[(now + 1) % THEMES.length]);
       show();
     });

@@ -1,12 +1,16 @@
 // Says that a file is too large before it travels, and sends it once.
 
+/** @type {HTMLFormElement|null} */
 const form = document.querySelector("[data-upload]");
-const file = form.querySelector("[data-most-bytes]");
-const button = form.querySelector("button.primary");
+/** @type {HTMLInputElement|null|undefined} */
+const file = form?.querySelector("[data-most-bytes]");
+/** @type {HTMLButtonElement|null|undefined} */
+const button = form?.querySelector("button.primary");
+if (!form || !file || !button) throw new TypeError("there is no form to send a file with");
 
 file.addEventListener("change", () => {
-  const tooLarge = file.files[0]?.size > Number(file.dataset.mostBytes);
-  file.setCustomValidity(tooLarge ? file.dataset.tooLarge : "");
+  const tooLarge = (file.files?.[0]?.size ?? 0) > Number(file.dataset.mostBytes);
+  file.setCustomValidity((tooLarge && file.dataset.tooLarge) || "");
   file.reportValidity();
 });
 
@@ -18,3 +22,5 @@ form.addEventListener("submit", () => {
 addEventListener("pageshow", () => {
   button.disabled = false;
 });
+
+export {}; // a module: its names are its own

@@ -1,28 +1,44 @@
-/** Fetches and unpacks grid files beside the page's own thread. See tables.js for what is asked and answered. */
+/**
+ * Fetches and unpacks grid files beside the page's own thread.
+ * @typedef {{address: string, headers: Record<string, string>, width: number, height: number}} Question
+ * @typedef {{loaded: number, total: number}} Progress bytes
+ * @typedef {{boxes: Int16Array<ArrayBuffer>, feet: Int16Array<ArrayBuffer>|null, index: import("../geometry/feet.js").FootIndex|null,
+ *            decoded: number}} Found `decoded`: ms
+ * @typedef {Found|{error: string}} Answer
+ */
 import { indexFeet } from "../geometry/feet.js";
 import { decodeGrid } from "../geometry/grid_file.js";
 
 const EVERY = 250_000; // bytes between two reports
 
-self.addEventListener("message", async ({ data: { address, headers, width, height } }) => {
+self.addEventListener("message", async ({ data }) => {
+  /** @type {Question} */
+  const { address, headers, width, height } = data;
   try {
     const packed = await fetchCounting(address, headers);
     const start = performance.now();
     const { boxes, feet } = decodeGrid(await unpack(packed));
     const index = feet && indexFeet({ boxes, feet, width, height });
     const decoded = performance.now() - start;
-    const moved = index ? [feet.buffer, index.starts.buffer, index.members.buffer] : [];
-    self.postMessage({ boxes, feet, index, decoded }, [boxes.buffer, ...moved]);
+    const transfer = [boxes.buffer];
+    if (feet && index) transfer.push(feet.buffer, index.starts.buffer, index.members.buffer);
+    answer({ boxes, feet, index, decoded }, transfer);
   } catch (error) {
-    self.postMessage({ error: error.message });
+    answer({ error: error instanceof Error ? error.message : String(error) });
   }
 });
 
-/** @returns {Promise<Blob>} */
+/** @param {Answer|Progress} said @param {ArrayBuffer[]} [transfer] */
+function answer(said, transfer = []) {
+  self.postMessage(said, { transfer });
+}
+
+/** @param {string} address @param {Record<string, string>} headers @returns {Promise<Blob>} */
 async function fetchCounting(address, headers) {
   const response = await fetch(address, { headers, credentials: "same-origin", priority: "low" });
-  if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+  if (!response.ok || !response.body) throw new Error(`${response.status} ${response.statusText}`);
   const total = Number(response.headers.get("Content-Length"));
+  /** @type {Uint8Array<ArrayBuffer>[]} */
   const chunks = [];
   let [loaded, told] = [0, 0];
   for (const reader = response.body.getReader(); ; ) {
@@ -32,10 +48,11 @@ async function fetchCounting(address, headers) {
     loaded += value.length;
     if (loaded - told < EVERY) continue;
     told = loaded;
-    self.postMessage({ loaded, total });
+    answer({ loaded, total });
   }
 }
 
+/** @param {Blob} blob */
 function unpack(blob) {
   return new Response(blob.stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
 }

@@ -7,17 +7,28 @@ const AGAIN = 5000; // ms until a question that was not answered is asked again
 /**
  * Boxes of people of their own size in views whose model only the server knows: asked for many at once, remembered
  * for ever. Emits `change` when some have arrived.
+ * @typedef {import("../base/answers.js").Sized} Sized
+ * @typedef {import("../base/answers.js").BoxesByCamera} BoxesByCamera
+ * @extends {Emitter<{change: void}>}
  */
 export class OwnSizes extends Emitter {
+  /** @param {Pick<import("../base/api.js").Api, "rectangles">} api */
   constructor(api) {
     super();
     this._api = api;
-    this._known = new Map(); // key → boxes by camera; null: asked for
-    this._waiting = new Map(); // key → {position, height, radius}
+    /** @type {Map<string, BoxesByCamera|null>} null: asked for */
+    this._known = new Map();
+    /** @type {Map<string, Sized>} */
+    this._waiting = new Map();
+    /** @type {number|null} */
     this._timer = null;
   }
 
-  /** Null where not visible, and until the server has answered. */
+  /**
+   * Null where not visible, and until the server has answered.
+   * @param {number} index of the camera @param {Sized} person
+   * @returns {import("../geometry/rectangle.js").Rectangle|null}
+   */
   rectangle(index, { position, height, radius }) {
     const key = `${position} ${height} ${radius}`;
     if (!this._known.has(key)) {
