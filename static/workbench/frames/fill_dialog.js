@@ -10,11 +10,13 @@ import { keyFor } from "../keys/keys.js";
  * Shows what can be filled in, before anything is.
  * @param {number|null} person the selected one
  * @returns {Promise<object[]|null>} the edits the annotator chose; empty: there is nothing to fill
+ * @param {Store} store @param {Scene} scene @param {MapColours} mapColours
  */
 export async function chooseFill(store, scene, mapColours, person) {
   const offers = offersFor(store, scene, person);
   if (!offers.length) return [];
   const map = element("div", { className: "path-map" });
+  /** @param {Offer} offer */
   const preview = ({ edits }) => map.replaceChildren(previewMap(store, scene, mapColours, edits));
   preview(offers[0]);
   const answered = ask({
@@ -30,6 +32,7 @@ export async function chooseFill(store, scene, mapColours, person) {
     ],
   });
   // The map shows what the button does that one is about to press.
+  /** @param {Event} event */
   const about = ({ target }) => {
     const offer = offers.find(({ id }) => id === target.closest("[data-answer]")?.dataset.answer);
     if (offer) preview(offer);
@@ -39,7 +42,10 @@ export async function chooseFill(store, scene, mapColours, person) {
   return offers.find(({ id }) => id === answer)?.edits ?? null;
 }
 
-/** @returns {{id, label, edits}[]} what there is to fill, the narrowest first */
+/**
+ * @returns {{id, label, edits}[]} what there is to fill, the narrowest first
+ * @param {Store} store @param {Scene} scene @param {number|null} person
+ */
 function offersFor(store, scene, person) {
   const everybody = new Set(store.numbers.flatMap((number) => [...store.people(number).keys()]));
   const own = person === null ? [] : fillEdits(store, scene, person);
@@ -57,6 +63,7 @@ function offersFor(store, scene, person) {
   ].filter(({ edits, skip }) => edits.length && !skip);
 }
 
+/** @param {Store} store @param {Offer} offer */
 function describe(store, { id, edits }) {
   const numbers = [...new Set(edits.map(({ frame }) => frame))].sort((one, other) => one - other);
   const places = numbers.map((number) => store.numbers.indexOf(number) + 1).join(", ");
@@ -93,6 +100,7 @@ function describe(store, { id, edits }) {
   return element("p", { "data-offer": id }, `${sentence} ${again}`);
 }
 
+/** @param {Store} store @param {Scene} scene @param {MapColours} mapColours @param {PersonEdit[]} edits */
 function previewMap(store, scene, mapColours, edits) {
   const people = [...new Set(edits.map(({ person }) => person))];
   const paths = people.flatMap((person) => {

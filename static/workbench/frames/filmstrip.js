@@ -18,7 +18,13 @@ const HEAD = 16; // CSS pixels for the frame's number
  */
 export class Filmstrip {
   constructor({ scene, store, loader, images, navigation, panes, settings }) {
-    Object.assign(this, { scene, store, loader, images, navigation, panes, settings });
+    this.scene = scene;
+    this.store = store;
+    this.loader = loader;
+    this.images = images;
+    this.navigation = navigation;
+    this.panes = panes;
+    this.settings = settings;
     this._fetching = null;
     this._painted = new Map(); // cell → what it shows
     this._canvas = element("canvas", {});
@@ -42,6 +48,7 @@ export class Filmstrip {
     return !this.element.hidden;
   }
 
+  /** @param {boolean} shown */
   _show(shown) {
     this.element.hidden = !shown;
     this.navigation.lookAround(shown ? REACH : 0);
@@ -85,7 +92,10 @@ export class Filmstrip {
     return numbers.slice(first, first + most);
   }
 
-  /** The person in a frame, or where one would look for him. */
+  /**
+   * The person in a frame, or where one would look for him.
+   * @param {number} person @param {number} number @returns {Step}
+   */
   _step(person, number) {
     if (!this.store.frame(number).loaded) {
       this._fetch(number);
@@ -97,14 +107,19 @@ export class Filmstrip {
     return { number, here: false, one: middle ?? this._expected(person, number) };
   }
 
-  /** A piece of a long layer at a time; when the network is away, the next repaint asks again. */
+  /**
+   * A piece of a long layer at a time; when the network is away, the next repaint asks again.
+   * @param {number} number
+   */
   _fetch(number) {
     const done = () => (this._fetching = null);
     this._fetching ??= this.loader.load(number, false).then(done, done);
   }
 
+  /** @param {number} person @param {number} number */
   _expected(person, number) {
     const { store, scene } = this;
+    /** @param {number} one */
     const distance = (one) => Math.abs(one - number);
     const known = store.numbers
       .filter((one) => store.person(person, one))
@@ -122,13 +137,17 @@ export class Filmstrip {
     this._context().clearRect(0, 0, this._room.width, this._room.height);
   }
 
-  /** Other frames or views: everything is painted anew, and every frame gets its button. */
+  /**
+   * Other frames or views: everything is painted anew, and every frame gets its button.
+   * @param {string} layout @param {number} person @param {number[]} numbers @param {number[]} views
+   */
   _arrange(layout, person, numbers, views) {
     this._clear();
     this._layout = layout;
     this._buttons.replaceChildren(...numbers.map((number) => this._button(person, number, views)));
   }
 
+  /** @param {number} person @param {number} number @param {number[]} views */
   _button(person, number, views) {
     const place = this.store.numbers.indexOf(number) + 1;
     const label = gettext("Person {person} in frame {place}", { person, place });
@@ -140,7 +159,10 @@ export class Filmstrip {
     });
   }
 
-  /** A click in a crop also makes its view the active one. */
+  /**
+   * A click in a crop also makes its view the active one.
+   * @param {MouseEvent} event @param {number} person @param {number} number @param {number[]} views
+   */
   async _go(event, person, number, views) {
     const { left, width } = event.currentTarget.getBoundingClientRect();
     const view = views[Math.floor(((event.clientX - left) / width) * views.length)];
@@ -152,6 +174,7 @@ export class Filmstrip {
     if (pane && event.detail > 0) this.panes.activate(pane);
   }
 
+  /** @param {Step} step @param {number} column @param {number} columns @param {number[]} views */
   _paintFrame(step, column, columns, views) {
     const { number, one, here } = step;
     const width = this._room.width / columns;
@@ -175,6 +198,9 @@ export class Filmstrip {
     for (const cell of cells) paintCrop(ctx, this.scene, cell, one, here);
   }
 
+  /**
+   * @param {CanvasRenderingContext2D} ctx @param {number} left @param {number} width @param {number} number @param {boolean} current
+   */
   _paintHead(ctx, left, width, number, current) {
     const style = getComputedStyle(this.element);
     ctx.fillStyle = current ? style.outlineColor : style.color;
@@ -185,7 +211,10 @@ export class Filmstrip {
     if (current) ctx.fillRect(left + GAP, HEAD - 2, width - 2 * GAP, 2);
   }
 
-  /** Light is enough; full resolution where it is there anyway. */
+  /**
+   * Light is enough; full resolution where it is there anyway.
+   * @param {number} number @param {number} view
+   */
   _picture(number, view) {
     const full = this.images.peek(number, view, "full");
     return full ?? this.images.get(number, view, "light").bitmap;
@@ -198,6 +227,7 @@ export class Filmstrip {
   }
 }
 
+/** @param {unknown[]} one @param {unknown[]|undefined} other */
 function same(one, other) {
   return other !== undefined && one.length === other.length && one.every((value, index) => value === other[index]);
 }

@@ -5,7 +5,10 @@ import { failureWords } from "../../base/failure_words.js";
 import { gettext, ngettext } from "../../base/messages.js";
 import { carriedOf } from "../../truth/annotation.js";
 
-/** What there is to say about every frame of a batch before it is handed in. */
+/**
+ * What there is to say about every frame of a batch before it is handed in.
+ * @param {Store} store
+ */
 export function summary(store) {
   return store.numbers.map((number, index) => {
     const { people, done } = store.frame(number);
@@ -13,7 +16,10 @@ export function summary(store) {
   });
 }
 
-/** The summary after the last frame; submits, or jumps to a frame. */
+/**
+ * The summary after the last frame; submits, or jumps to a frame.
+ * @param {Handing & {store: Store, saver: import("../../saving/saver.js").Saver}} parts
+ */
 export async function finishAssignment({ store, saver, api, navigation, notices, home }) {
   const saved = await saver.flush();
   const rows = summary(store);
@@ -45,6 +51,7 @@ export async function finishAssignment({ store, saver, api, navigation, notices,
   if (answer === "submit") return submit({ api, navigation, notices, home });
 }
 
+/** @param {Handing} parts */
 async function submit({ api, navigation, notices, home }) {
   try {
     await api.submit();
@@ -56,6 +63,7 @@ async function submit({ api, navigation, notices, home }) {
   }
 }
 
+/** @param {Row[]} rows */
 function table(rows) {
   const head = [gettext("Frame"), gettext("People"), gettext("State"), ""];
   return element(
@@ -74,12 +82,14 @@ function table(rows) {
   );
 }
 
+/** @param {Row} row */
 function tableRow({ number, place, people, carried, done }) {
   const state = done
     ? gettext("done")
     : carried
       ? ngettext("{n} yellow", "{n} yellow", carried)
       : gettext("not finished");
+  /** @param {Event} event */
   const go = (event) => event.target.closest("dialog").close(`frame ${number}`);
   return element(
     "tr",

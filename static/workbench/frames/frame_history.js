@@ -13,7 +13,13 @@ import { keyFor } from "../keys/keys.js";
  */
 export class FrameHistory {
   constructor({ api, store, saver, history, panes, notices, guard }) {
-    Object.assign(this, { api, store, saver, history, panes, notices, guard });
+    this.api = api;
+    this.store = store;
+    this.saver = saver;
+    this.history = history;
+    this.panes = panes;
+    this.notices = notices;
+    this.guard = guard;
     this._shown = null; // {revision, people, done, nobody} drawn as ghosts
     this._asked = 0; // only the newest answer counts
     this._list = element("div", {
@@ -103,6 +109,7 @@ export class FrameHistory {
     this.open();
   }
 
+  /** @param {number} number @param {import("../../base/answers.js").Revision} save @param {boolean} newest */
   _row(number, { revision, created_at: at, author, people, done }, newest) {
     const count = ngettext("{n} person", "{n} people", people);
     return element(
@@ -116,6 +123,7 @@ export class FrameHistory {
     );
   }
 
+  /** @param {number} number @param {number} revision */
   async _choose(number, revision) {
     this._asked += 1;
     const asked = this._asked;
@@ -124,6 +132,7 @@ export class FrameHistory {
     this._show({ revision, people: byPerson(state.annotations), done: state.done, nobody: state.nobody });
   }
 
+  /** @template Answer @param {number} asked @param {() => Promise<Answer>} question @returns {Promise<Answer|null>} */
   async _ask(asked, question) {
     try {
       return await question();
@@ -134,6 +143,7 @@ export class FrameHistory {
     }
   }
 
+  /** @param {Shown|null} shown */
   _show(shown) {
     this._shown = shown;
     this._restore.disabled = shown === null;
@@ -146,7 +156,9 @@ export class FrameHistory {
   _describe() {
     const now = this.store.people();
     const then = this._shown.people;
+    /** @type {(people: People, test: (person: number) => boolean) => number} */
     const count = (people, test) => [...people.keys()].filter(test).length;
+    /** @type {[number, (n: number) => string][]} */
     const parts = [
       [
         count(then, (person) => !now.has(person)),
@@ -167,6 +179,7 @@ export class FrameHistory {
     );
   }
 
+  /** @param {import("../../views/pane.js").Pane} pane */
   _ghosts(pane) {
     if (!this._shown) return [];
     const now = this.store.people();
@@ -178,7 +191,10 @@ export class FrameHistory {
       }));
   }
 
-  /** The list is a field, so its keys are its own; Escape goes back to annotating. */
+  /**
+   * The list is a field, so its keys are its own; Escape goes back to annotating.
+   * @param {KeyboardEvent} event
+   */
   _onKey(event) {
     if (event.key === "Escape") this.close();
     else if (event.key === "Enter" && event.target.matches("input")) this.restore();
@@ -188,9 +204,13 @@ export class FrameHistory {
   }
 }
 
-/** Today the time is enough. */
+/**
+ * Today the time is enough.
+ * @param {Date} at
+ */
 function timeWords(at) {
   const today = at.toDateString() === new Date().toDateString();
+  /** @type {Intl.DateTimeFormatOptions} */
   const time = { hour: "2-digit", minute: "2-digit", second: "2-digit" };
   return today ? at.toLocaleTimeString([], time) : at.toLocaleString([], { day: "numeric", month: "short", ...time });
 }

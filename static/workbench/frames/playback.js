@@ -4,10 +4,15 @@ import { Emitter } from "../../base/emitter.js";
 export class Playback extends Emitter {
   constructor({ scene, store, images, navigation, settings }) {
     super();
-    Object.assign(this, { scene, store, images, navigation, settings });
+    this.scene = scene;
+    this.store = store;
+    this.images = images;
+    this.navigation = navigation;
+    this.settings = settings;
     this._request = null;
     this._due = 0;
     // Whoever clicks or edits wants to work on what is shown now.
+    /** @param {PointerEvent} event */
     this._onPointer = (event) => event.target.closest("[data-action=play]") || this.stop();
     store.on("change", ({ source }) => source === "edit" && this.stop());
   }
@@ -52,6 +57,7 @@ export class Playback extends Emitter {
     this._request = requestAnimationFrame((now) => this._tick(now));
   }
 
+  /** @param {number} now ms */
   _tick(now) {
     const next = this.store.neighbour(1);
     if (next === undefined) return this.stop();
@@ -63,12 +69,18 @@ export class Playback extends Emitter {
     this._ask();
   }
 
-  /** A frame that cannot be loaded ends the film where it is. */
+  /**
+   * A frame that cannot be loaded ends the film where it is.
+   * @param {number} number
+   */
   async _show(number) {
     if (!(await this.navigation.look(number))) this.stop();
   }
 
-  /** A picture that failed for good does not hold up the others. */
+  /**
+   * A picture that failed for good does not hold up the others.
+   * @param {number} number
+   */
   _ready(number) {
     return this.scene.cameras.every(({ index }) => {
       const { bitmap, status } = this.images.get(number, index, "light");

@@ -14,12 +14,24 @@ const PATHS = ["none", "selected", "all"];
 /** What an annotator does across frames: carry, copy, fill, look through, find what is left. */
 export class TimeActions {
   constructor({ scene, store, history, loader, settings, panes, notices, guard, navigation, playback }) {
-    Object.assign(this, { scene, store, history, loader, settings, panes, notices, guard, navigation, playback });
+    this.scene = scene;
+    this.store = store;
+    this.history = history;
+    this.loader = loader;
+    this.settings = settings;
+    this.panes = panes;
+    this.notices = notices;
+    this.guard = guard;
+    this.navigation = navigation;
+    this.playback = playback;
     this._dialog = fetchedDialog(notices, import.meta.resolve("./fill_dialog.js"));
     this._asked = new Set(); // people in one frame only, shown once
   }
 
-  /** Rows for the table of actions, by the ids of the key table. */
+  /**
+   * Rows for the table of actions, by the ids of the key table.
+   * @returns {import("../actions.js").ActionTable}
+   */
   table() {
     return {
       bring: () => this.bring(-1),
@@ -37,7 +49,10 @@ export class TimeActions {
     };
   }
 
-  /** Everybody of the frame beside this one who is missing here, moved on the way he walked. */
+  /**
+   * Everybody of the frame beside this one who is missing here, moved on the way he walked.
+   * @param {Direction} direction
+   */
   async bring(direction) {
     if (this.guard.refused()) return;
     const sources = await this._sources(direction);
@@ -54,7 +69,10 @@ export class TimeActions {
     this.notices.say(ngettext("{n} person loaded", "{n} people loaded", missing.length));
   }
 
-  /** One person exactly where he stands in the frame beside this one: the selected one, or whom one chooses. */
+  /**
+   * One person exactly where he stands in the frame beside this one: the selected one, or whom one chooses.
+   * @param {Direction} direction
+   */
   async copy(direction) {
     if (this.guard.refused()) return;
     const sources = await this._sources(direction);
@@ -86,6 +104,7 @@ export class TimeActions {
     this.notices.say(ngettext("{n} box filled in", "{n} boxes filled in", edits.length));
   }
 
+  /** @param {number} offset */
   look(offset) {
     const number = this.store.neighbour(offset);
     if (number !== undefined) return this.navigation.look(number);
@@ -112,6 +131,7 @@ export class TimeActions {
       this.notices.say(gettext("Everybody is validated – {key} says the frame is done", { key: keyFor("nextFrame") }));
   }
 
+  /** @param {"pathsInViews"|"pathsOnMap"} name */
   cyclePaths(name) {
     const next = PATHS[(PATHS.indexOf(this.settings.get(name)) + 1) % PATHS.length];
     this.settings.set(name, next);
@@ -124,18 +144,23 @@ export class TimeActions {
     );
   }
 
-  /** Null when they could not be loaded. */
+  /**
+   * Null when they could not be loaded.
+   * @param {Direction} direction
+   */
   async _sources(direction) {
     const number = this.store.neighbour(direction);
     if (number !== undefined && !(await loadMissing(this, [number]))) return null;
     return sourcesOn(this.store, this.scene, this.store.current, direction);
   }
 
+  /** @param {Source} source */
   _whomToCopy({ people }) {
     const person = this.store.selection ?? this.navigation.held;
     return people.has(person) ? person : null;
   }
 
+  /** @param {Source} source @returns {Promise<number|"all"|null>} */
   async _choose({ number, people }) {
     const missing = [...people.keys()].filter((person) => !this.store.person(person));
     if (!missing.length) {
@@ -153,6 +178,7 @@ export class TimeActions {
     return answer === null || answer === "all" ? answer : Number(answer);
   }
 
+  /** @param {Source} source */
   _copyAll(source) {
     const { store } = this;
     const missing = [...source.people.values()].filter(({ person }) => !store.person(person));
@@ -165,11 +191,13 @@ export class TimeActions {
     this.history.run(commands.bring(store, store.current, source.outside ? withFreeNumbers(store, copies) : copies));
   }
 
+  /** @param {Annotation} one @param {Set<number>} [taken] @returns {Annotation} */
   _copied(source, one, taken = this._takenBeside(one.person)) {
     const position = freePosition(this.scene.grid, this.scene.metres(one.position), taken);
     return changed(one, { position, state: CARRIED, origin: "copied" });
   }
 
+  /** @param {number} except */
   _takenBeside(except) {
     const others = [...this.store.people().values()].filter(({ person }) => person !== except);
     return new Set(others.map(({ position }) => position));
@@ -182,11 +210,13 @@ export class TimeActions {
     return numbers.slice(loaded.indexOf(true), loaded.lastIndexOf(true) + 1);
   }
 
+  /** @param {number} number */
   _placeOf(number) {
     const index = this.store.numbers.indexOf(number);
     return index < 0 ? number : index + 1;
   }
 
+  /** @param {Direction} direction */
   _sayNobody(direction) {
     this.notices.say(
       direction < 0 ? gettext("Nobody is marked before this frame") : gettext("Nobody is marked after this frame"),

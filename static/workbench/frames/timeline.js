@@ -10,7 +10,10 @@ import { titleFor } from "../keys/keys.js";
  */
 export class Timeline {
   constructor({ store, saver, navigation, playback, perform }) {
-    Object.assign(this, { store, saver, navigation, playback });
+    this.store = store;
+    this.saver = saver;
+    this.navigation = navigation;
+    this.playback = playback;
     this._cells = new Map();
     this._changed = new Set();
     this._unsaved = new Set();
@@ -24,6 +27,7 @@ export class Timeline {
     this.paint();
   }
 
+  /** @param {Perform} perform */
   _build(perform) {
     this._play = this._button("play", "▶", perform);
     this._play.setAttribute("aria-label", gettext("Play"));
@@ -50,7 +54,9 @@ export class Timeline {
     );
   }
 
+  /** @param {string} id @param {string} text @param {Perform} perform */
   _button(id, text, perform) {
+    /** @param {MouseEvent & {currentTarget: HTMLElement}} event */
     const onclick = (event) => {
       perform(id);
       if (event.detail > 0) event.currentTarget.blur(); // else Space would press it again
@@ -62,6 +68,7 @@ export class Timeline {
     );
   }
 
+  /** @param {number} number @param {number} index */
   _cell(number, index) {
     const mark = element("span", { className: "mark" });
     const node = element(
@@ -88,7 +95,10 @@ export class Timeline {
     frames.addEventListener("keydown", (event) => this._onKey(event));
   }
 
-  /** While the pointer is down one only looks; where it is let go the frame is opened to work on. */
+  /**
+   * While the pointer is down one only looks; where it is let go the frame is opened to work on.
+   * @param {PointerEvent} event
+   */
   _scrub(event) {
     const { left, width } = this._frames.getBoundingClientRect();
     const { numbers } = this.store;
@@ -105,7 +115,10 @@ export class Timeline {
     this._scrubbing = null;
   }
 
-  /** As a slider with the keyboard's focus on it. */
+  /**
+   * As a slider with the keyboard's focus on it.
+   * @param {KeyboardEvent} event
+   */
   _onKey(event) {
     const { numbers } = this.store;
     const index = numbers.indexOf(this.store.current);
@@ -123,7 +136,10 @@ export class Timeline {
     if (number !== undefined) this.navigation.jump(number);
   }
 
-  /** Of a long layer only the cells of changed frames are looked at: this runs for every step of a held key. */
+  /**
+   * Of a long layer only the cells of changed frames are looked at: this runs for every step of a held key.
+   * @param {Iterable<number>} [frames]
+   */
   _later(frames = []) {
     for (const number of frames) this._changed.add(number);
     paintSoon(this);
@@ -142,6 +158,7 @@ export class Timeline {
     this._frames.setAttribute("aria-valuetext", this._words(store.current, unsaved.has(store.current)));
   }
 
+  /** @param {Cell|undefined} cell @param {number} number @param {boolean} unsaved */
   _refresh(cell, number, unsaved) {
     const { state } = frameState(this.store.frame(number));
     const current = number === this.store.current;
@@ -154,6 +171,7 @@ export class Timeline {
     setText(cell.mark, state === "done" ? "✓" : "");
   }
 
+  /** @param {number} number @param {boolean} unsaved */
   _words(number, unsaved) {
     const { state, people, yellow } = frameState(this.store.frame(number));
     const words = {

@@ -12,7 +12,10 @@ const SETTLED = 600; // ms without an edit before the server is asked
  */
 export class Tutorial {
   constructor({ api, store, panes, navigation, home }) {
-    Object.assign(this, { _api: api, _store: store, _navigation: navigation, _home: home });
+    this._api = api;
+    this._store = store;
+    this._navigation = navigation;
+    this._home = home;
     this._spotlight = new Spotlight(panes);
     this._index = 0;
     this._timer = null;
@@ -90,7 +93,10 @@ export class Tutorial {
     this._timer = setTimeout(() => this._ask(true), SETTLED);
   }
 
-  /** `loud`: something was done, so say what is still wrong; otherwise only praise. */
+  /**
+   * `loud`: something was done, so say what is still wrong; otherwise only praise.
+   * @param {boolean} loud
+   */
   async _ask(loud) {
     const { id } = this._steps[this._index];
     const asked = ++this._asked;
@@ -106,6 +112,7 @@ export class Tutorial {
     }
   }
 
+  /** @param {string} message */
   _praise(message) {
     const last = this._index === this._steps.length - 1;
     setText(this._verdict, `✓ ${message}`);
@@ -143,7 +150,10 @@ export class Tutorial {
     await this._goTo(index);
   }
 
-  /** It may have been done already. */
+  /**
+   * It may have been done already.
+   * @param {number} index
+   */
   _goTo(index) {
     clearTimeout(this._timer);
     this._asked += 1;
@@ -154,7 +164,10 @@ export class Tutorial {
   }
 }
 
-/** Enter and Space on a button of the tutorial press it, instead of going to people. */
+/**
+ * Enter and Space on a button of the tutorial press it, instead of going to people.
+ * @param {KeyboardEvent} event
+ */
 function keepForButtons(event) {
   if (event.target.closest("button") && ["Enter", " "].includes(event.key)) event.stopPropagation();
 }

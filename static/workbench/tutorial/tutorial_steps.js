@@ -3,6 +3,7 @@
 import { gettext } from "../../base/messages.js";
 import { keyFor } from "../keys/keys.js";
 
+/** @param {import("../../truth/annotation.js").Annotation} one */
 const isYellow = ({ state }) => state === "carried";
 
 /**
