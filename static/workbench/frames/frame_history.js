@@ -8,10 +8,25 @@ import { LOOKS } from "../../views/styles.js";
 import { keyFor } from "../keys/keys.js";
 
 /**
+ * @typedef {import("../../truth/annotation.js").People} People
+ * @typedef {{revision: number, people: People, done: boolean, nobody: boolean}} Shown a save, drawn as ghosts
+ */
+
+/**
  * Who saved the open frame, and when: a list beside the views. The chosen save is drawn in the views as ghosts
  * over what is there now; restoring it is an edit like any other.
  */
 export class FrameHistory {
+  /**
+   * @param {object} parts
+   * @param {import("../../base/api.js").Api} parts.api
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../saving/saver.js").Saver} parts.saver
+   * @param {import("../../truth/history.js").History} parts.history
+   * @param {import("../../views/panes.js").Panes} parts.panes
+   * @param {import("../../base/notices.js").Notices} parts.notices
+   * @param {import("../placing/guard.js").Guard} parts.guard
+   */
   constructor({ api, store, saver, history, panes, notices, guard }) {
     this.api = api;
     this.store = store;
@@ -20,7 +35,8 @@ export class FrameHistory {
     this.panes = panes;
     this.notices = notices;
     this.guard = guard;
-    this._shown = null; // {revision, people, done, nobody} drawn as ghosts
+    /** @type {Shown|null} */
+    this._shown = null;
     this._asked = 0; // only the newest answer counts
     this._list = element("div", {
       className: "revisions",
@@ -50,7 +66,7 @@ export class FrameHistory {
     );
     panes.addExtra((pane) => this._ghosts(pane));
     store.on("frame", () => !this.element.hidden && this._load());
-    store.on("change", () => this._shown && this._describe());
+    store.on("change", () => this._shown && this._describe(this._shown));
   }
 
   toggle() {
@@ -86,7 +102,7 @@ export class FrameHistory {
     this._asked += 1;
     this.element.hidden = true;
     this._show(null);
-    document.activeElement?.blur();
+    if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
   }
 
   restore() {
@@ -119,7 +135,7 @@ export class FrameHistory {
       element("strong", {}, `r${revision}`),
       element("time", { dateTime: at, title: new Date(at).toLocaleString() }, timeWords(new Date(at))),
       element("span", { className: "author" }, author || gettext("unknown")),
-      element("span", {}, [count, done && gettext("done"), newest && gettext("newest")].filter(Boolean).join(" · ")),
+      element("span", {}, [count, done ? gettext("done") : "", newest ? gettext("newest") : ""].filter(Boolean).join(" · ")),
     );
   }
 
@@ -147,15 +163,15 @@ export class FrameHistory {
   _show(shown) {
     this._shown = shown;
     this._restore.disabled = shown === null;
-    if (shown) this._describe();
+    if (shown) this._describe(shown);
     else this._list.replaceChildren();
     this.panes.markPeople();
   }
 
-  /** What the chosen save has different from now. */
-  _describe() {
+  /** What the chosen save has different from now. @param {Shown} shown */
+  _describe(shown) {
     const now = this.store.people();
-    const then = this._shown.people;
+    const then = shown.people;
     /** @type {(people: People, test: (person: number) => boolean) => number} */
     const count = (people, test) => [...people.keys()].filter(test).length;
     /** @type {[number, (n: number) => string][]} */
@@ -197,7 +213,7 @@ export class FrameHistory {
    */
   _onKey(event) {
     if (event.key === "Escape") this.close();
-    else if (event.key === "Enter" && event.target.matches("input")) this.restore();
+    else if (event.key === "Enter" && event.target instanceof HTMLInputElement) this.restore();
     else return;
     event.preventDefault();
     event.stopPropagation();

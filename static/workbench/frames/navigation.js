@@ -11,11 +11,24 @@ import { nearestSide, withFreeNumbers } from "../../truth/sources.js";
 const AT_ONCE = 96; // light pictures kept at hand: a batch of ten frames with up to nine views
 const PLAYING = 8; // frames fetched ahead of a running film
 
+/** @typedef {import("../../truth/annotation.js").Annotation} Annotation */
+
 /**
  * Going through the frames. Leaving a frame forwards says it is done; a frame nobody has been to starts with
  * the people of the frames beside it, moved on the way they walked, yellow.
  */
 export class Navigation {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/scene.js").Scene} parts.scene
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../truth/history.js").History} parts.history
+   * @param {import("../../saving/saver.js").Saver} parts.saver
+   * @param {import("../../views/images.js").Images} parts.images
+   * @param {import("../../saving/loader.js").Loader} parts.loader
+   * @param {import("../../base/notices.js").Notices} parts.notices
+   * @param {() => Promise<unknown>} parts.finish
+   */
   constructor({ scene, store, history, saver, images, loader, notices, finish }) {
     this.scene = scene;
     this.store = store;
@@ -26,11 +39,14 @@ export class Navigation {
     this.notices = notices;
     this._finish = finish;
     this._busy = false;
+    /** @type {number|null} */
     this._looking = null; // the frame one scrubs to, while it is loaded
+    /** @type {number|null} */
     this._held = null; // who was selected before a frame without that person
     this._ahead = 0;
     this._around = 0;
-    this._brought = new Map(); // frame → people carried into it on this visit
+    /** @type {Map<number, Set<number>>} frame → people carried into it on this visit */
+    this._brought = new Map();
     store.on("frame", () => this._prefetch());
     this._prefetch();
   }
@@ -153,7 +169,8 @@ export class Navigation {
   _isNews(number, one) {
     const here = this.store.people(number);
     if (here.has(one.person)) return !same(here.get(one.person), one);
-    if (this._brought.has(number)) return !this._brought.get(number).has(one.person);
+    const brought = this._brought.get(number);
+    if (brought) return !brought.has(one.person);
     return [...here.values()].every(isFilled); // filled in from elsewhere: the others were never brought
   }
 

@@ -1,7 +1,18 @@
 import { Emitter } from "../../base/emitter.js";
 
-/** Plays through the frames, only looking. Never skips a frame: it waits for pictures. Emits `change`. */
+/**
+ * Plays through the frames, only looking. Never skips a frame: it waits for pictures. Emits `change`.
+ * @extends {Emitter<{change: void}>}
+ */
 export class Playback extends Emitter {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/scene.js").Scene} parts.scene
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../views/images.js").Images} parts.images
+   * @param {import("./navigation.js").Navigation} parts.navigation
+   * @param {import("../settings.js").Settings} parts.settings
+   */
   constructor({ scene, store, images, navigation, settings }) {
     super();
     this.scene = scene;
@@ -9,11 +20,14 @@ export class Playback extends Emitter {
     this.images = images;
     this.navigation = navigation;
     this.settings = settings;
+    /** @type {number|null} */
     this._request = null;
     this._due = 0;
     // Whoever clicks or edits wants to work on what is shown now.
     /** @param {PointerEvent} event */
-    this._onPointer = (event) => event.target.closest("[data-action=play]") || this.stop();
+    this._onPointer = ({ target }) => {
+      if (!(target instanceof Element && target.closest("[data-action=play]"))) this.stop();
+    };
     store.on("change", ({ source }) => source === "edit" && this.stop());
   }
 
@@ -40,7 +54,7 @@ export class Playback extends Emitter {
 
   /** Where it stops one can work: the frame is opened as if one had gone there. */
   stop() {
-    if (!this.playing) return;
+    if (this._request === null) return;
     cancelAnimationFrame(this._request);
     this._request = null;
     document.removeEventListener("pointerdown", this._onPointer, { capture: true });

@@ -9,10 +9,31 @@ import { sourcesOn, withFreeNumbers } from "../../truth/sources.js";
 import { nextTask } from "../../truth/todo.js";
 import { keyFor } from "../keys/keys.js";
 
+/**
+ * @typedef {import("../../truth/annotation.js").Annotation} Annotation
+ * @typedef {import("../../truth/sources.js").FrameSource} Source
+ * @typedef {-1|1} Direction to the frame before, or after
+ * @typedef {import("../settings.js").WhosePaths} WhosePaths
+ */
+
+/** @type {WhosePaths[]} */
 const PATHS = ["none", "selected", "all"];
 
 /** What an annotator does across frames: carry, copy, fill, look through, find what is left. */
 export class TimeActions {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/scene.js").Scene} parts.scene
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../truth/history.js").History} parts.history
+   * @param {import("../../saving/loader.js").Loader} parts.loader
+   * @param {import("../settings.js").Settings} parts.settings
+   * @param {import("../../views/panes.js").Panes} parts.panes
+   * @param {import("../../base/notices.js").Notices} parts.notices
+   * @param {import("../placing/guard.js").Guard} parts.guard
+   * @param {import("./navigation.js").Navigation} parts.navigation
+   * @param {import("./playback.js").Playback} parts.playback
+   */
   constructor({ scene, store, history, loader, settings, panes, notices, guard, navigation, playback }) {
     this.scene = scene;
     this.store = store;
@@ -24,7 +45,9 @@ export class TimeActions {
     this.guard = guard;
     this.navigation = navigation;
     this.playback = playback;
+    /** @type {() => Promise<typeof import("./fill_dialog.js")|null>} */
     this._dialog = fetchedDialog(notices, import.meta.resolve("./fill_dialog.js"));
+    /** @type {Set<number>} */
     this._asked = new Set(); // people in one frame only, shown once
   }
 
@@ -79,9 +102,10 @@ export class TimeActions {
     if (!sources?.length) return sources && this._sayNobody(direction);
     const [source] = sources;
     const person = this._whomToCopy(source) ?? (await this._choose(source));
-    if (person === null) return;
     if (person === "all") return this._copyAll(source);
-    const after = this._copied(source, source.people.get(person));
+    const there = person === null ? undefined : source.people.get(person);
+    if (person === null || !there) return;
+    const after = this._copied(there);
     const stranger = source.outside && !this.store.person(person); // whose number may mean somebody else here
     this.history.run(commands.copy(this.store, stranger ? withFreeNumbers(this.store, [after])[0] : after));
   }
@@ -119,7 +143,7 @@ export class TimeActions {
     if (task.number !== this.store.current) return; // it could not be loaded
     if (task.person !== null) this.store.select(task.person);
     if (task.kind === "single") {
-      this._asked.add(task.person);
+      if (task.person !== null) this._asked.add(task.person);
       this.notices.say(
         gettext("Person {person} is in this frame only – {key} fills in the other frames", {
           person: task.person,
@@ -157,7 +181,7 @@ export class TimeActions {
   /** @param {Source} source */
   _whomToCopy({ people }) {
     const person = this.store.selection ?? this.navigation.held;
-    return people.has(person) ? person : null;
+    return person !== null && people.has(person) ? person : null;
   }
 
   /** @param {Source} source @returns {Promise<number|"all"|null>} */
@@ -184,7 +208,7 @@ export class TimeActions {
     const missing = [...source.people.values()].filter(({ person }) => !store.person(person));
     const taken = new Set([...store.people().values()].map(({ position }) => position));
     const copies = missing.map((one) => {
-      const after = this._copied(source, one, taken);
+      const after = this._copied(one, taken);
       taken.add(after.position);
       return after;
     });
@@ -192,7 +216,7 @@ export class TimeActions {
   }
 
   /** @param {Annotation} one @param {Set<number>} [taken] @returns {Annotation} */
-  _copied(source, one, taken = this._takenBeside(one.person)) {
+  _copied(one, taken = this._takenBeside(one.person)) {
     const position = freePosition(this.scene.grid, this.scene.metres(one.position), taken);
     return changed(one, { position, state: CARRIED, origin: "copied" });
   }

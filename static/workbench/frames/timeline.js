@@ -5,19 +5,38 @@ import { carriedOf } from "../../truth/annotation.js";
 import { titleFor } from "../keys/keys.js";
 
 /**
+ * @typedef {import("../actions.js").Perform} Perform
+ * @typedef {{node: HTMLElement, mark: HTMLElement, signature: string}} Cell
+ */
+
+/**
  * All frames in a line: what state each is in, play, and a scrubber to look through them. A frame's mark says it
  * by shape: ✓ done, a dashed ring yellow left, a dot worked on, nothing where nobody is yet; • not saved yet.
  */
 export class Timeline {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../saving/saver.js").Saver} parts.saver
+   * @param {import("./navigation.js").Navigation} parts.navigation
+   * @param {import("./playback.js").Playback} parts.playback
+   * @param {Perform} parts.perform
+   */
   constructor({ store, saver, navigation, playback, perform }) {
     this.store = store;
     this.saver = saver;
     this.navigation = navigation;
     this.playback = playback;
+    /** @type {Map<number, Cell>} */
     this._cells = new Map();
+    /** @type {Set<number>} */
     this._changed = new Set();
+    /** @type {Set<number>} */
     this._unsaved = new Set();
+    /** @type {number|null} */
     this._scrubbing = null; // the frame under the pointer
+    this._play = this._button("play", "▶", perform);
+    this._frames = this._line();
     this.element = this._build(perform);
     store.on("change", ({ frames }) => this._later(frames));
     store.on("frame", ({ before, after }) => this._later([before, after]));
@@ -29,20 +48,7 @@ export class Timeline {
 
   /** @param {Perform} perform */
   _build(perform) {
-    this._play = this._button("play", "▶", perform);
     this._play.setAttribute("aria-label", gettext("Play"));
-    this._frames = element(
-      "div",
-      {
-        className: "timeline-frames",
-        role: "slider",
-        tabIndex: 0,
-        "aria-label": gettext("Frames"),
-        "aria-valuemin": "1",
-        "aria-valuemax": String(this.store.numbers.length),
-      },
-      this.store.numbers.map((number, index) => this._cell(number, index)),
-    );
     this._attach();
     return element(
       "section",
@@ -54,12 +60,27 @@ export class Timeline {
     );
   }
 
+  _line() {
+    return element(
+      "div",
+      {
+        className: "timeline-frames",
+        role: "slider",
+        tabIndex: 0,
+        "aria-label": gettext("Frames"),
+        "aria-valuemin": "1",
+        "aria-valuemax": String(this.store.numbers.length),
+      },
+      this.store.numbers.map((number, index) => this._cell(number, index)),
+    );
+  }
+
   /** @param {string} id @param {string} text @param {Perform} perform */
   _button(id, text, perform) {
-    /** @param {MouseEvent & {currentTarget: HTMLElement}} event */
-    const onclick = (event) => {
+    /** @param {MouseEvent} event */
+    const onclick = ({ detail, currentTarget }) => {
       perform(id);
-      if (event.detail > 0) event.currentTarget.blur(); // else Space would press it again
+      if (detail > 0 && currentTarget instanceof HTMLElement) currentTarget.blur(); // else Space would press it again
     };
     return element(
       "button",
@@ -122,6 +143,7 @@ export class Timeline {
   _onKey(event) {
     const { numbers } = this.store;
     const index = numbers.indexOf(this.store.current);
+    /** @type {Record<string, number>} */
     const wanted = {
       ArrowLeft: index - 1,
       ArrowDown: index - 1,
@@ -164,7 +186,7 @@ export class Timeline {
     const current = number === this.store.current;
     const words = this._words(number, unsaved);
     const signature = `${words} ${current}`;
-    if (signature === cell.signature) return;
+    if (!cell || signature === cell.signature) return;
     cell.signature = signature;
     Object.assign(cell.node.dataset, { state, unsaved, current });
     cell.node.title = words;
@@ -190,7 +212,7 @@ export class Timeline {
   }
 }
 
-/** Pure. @returns {{state: "done"|"yellow"|"open"|"empty"|"unknown", people: number, yellow: number}} */
+/** Pure. @param {import("../../truth/store.js").Frame} frame @returns {{state: "done"|"yellow"|"open"|"empty"|"unknown", people: number, yellow: number}} */
 export function frameState({ people, done, loaded }) {
   const yellow = carriedOf(people).length;
   const state = !loaded ? "unknown" : yellow ? "yellow" : done ? "done" : people.size ? "open" : "empty";

@@ -2,7 +2,10 @@ import { gettext } from "../../base/messages.js";
 import { loadMissing } from "../../saving/load_missing.js";
 
 /**
- * @type {Record<Direction, {nothing: () => string, done: (label: string) => string, there: (label: string, place: number) => string}>}
+ * @typedef {"undo"|"redo"} Direction
+ * @typedef {{nothing: () => string, done: (label: string) => string,
+ *            there: (label: string, place: number) => string}} Words
+ * @type {Record<Direction, Words>}
  */
 const STEPS = {
   undo: {
@@ -19,6 +22,14 @@ const STEPS = {
 
 /** Back and forth through everything that was done: goes to the frame it was done in, and says what it was. */
 export class UndoActions {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../truth/history.js").History} parts.history
+   * @param {import("../../saving/loader.js").Loader} parts.loader
+   * @param {import("../../base/notices.js").Notices} parts.notices
+   * @param {import("../placing/guard.js").Guard} parts.guard
+   */
   constructor({ store, history, loader, notices, guard }) {
     this.store = store;
     this.history = history;

@@ -11,6 +11,14 @@ const SETTLED = 600; // ms without an edit before the server is asked
  * start over; nothing is saved here but that a step was done.
  */
 export class Tutorial {
+  /**
+   * @param {object} parts
+   * @param {import("../../base/api.js").Api} parts.api
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../views/panes.js").Panes} parts.panes
+   * @param {import("../frames/navigation.js").Navigation} parts.navigation
+   * @param {string} parts.home
+   */
   constructor({ api, store, panes, navigation, home }) {
     this._api = api;
     this._store = store;
@@ -18,24 +26,9 @@ export class Tutorial {
     this._home = home;
     this._spotlight = new Spotlight(panes);
     this._index = 0;
-    this._timer = null;
+    /** @type {ReturnType<typeof setTimeout>|undefined} */
+    this._timer = undefined;
     this._asked = 0;
-    this._build();
-    store.on("change", ({ source }) => source === "edit" && this._soon());
-    store.on("frame", () => this._soon());
-  }
-
-  /** Asked for anew each time: the keys named in them can be changed. */
-  get _steps() {
-    return tutorialSteps();
-  }
-
-  /** Once the page is there. */
-  start() {
-    this._show();
-  }
-
-  _build() {
     this._progress = element("p", { className: "tutorial-progress" });
     this._title = element("h2", { tabIndex: -1 });
     this._text = element("p", {});
@@ -58,7 +51,23 @@ export class Tutorial {
     );
     this._check = element("button", { type: "button", onclick: () => this._ask(true) }, gettext("Check"));
     this._go = element("button", { type: "button", className: "main", hidden: true, onclick: () => this._advance() });
-    this.element = element(
+    this.element = this._build();
+    store.on("change", ({ source }) => source === "edit" && this._soon());
+    store.on("frame", () => this._soon());
+  }
+
+  /** Asked for anew each time: the keys named in them can be changed. */
+  get _steps() {
+    return tutorialSteps();
+  }
+
+  /** Once the page is there. */
+  start() {
+    this._show();
+  }
+
+  _build() {
+    return element(
       "section",
       { className: "tutorial", "aria-label": gettext("Tutorial"), onkeydown: keepForButtons },
       element("div", { className: "tutorial-head" }, this._progress, this._back, this._again),
@@ -159,7 +168,7 @@ export class Tutorial {
     this._asked += 1;
     this._index = index;
     this._show();
-    document.activeElement?.blur();
+    if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
     return this._ask(false);
   }
 }
@@ -169,5 +178,5 @@ export class Tutorial {
  * @param {KeyboardEvent} event
  */
 function keepForButtons(event) {
-  if (event.target.closest("button") && ["Enter", " "].includes(event.key)) event.stopPropagation();
+  if (event.target instanceof Element && event.target.closest("button") && ["Enter", " "].includes(event.key)) event.stopPropagation();
 }
