@@ -44,9 +44,10 @@ export class Database {
    */
   replace(store, value, keys) {
     return this._run(store, "readwrite", (objects) => {
-      /** @type {IDBRequest<unknown>[]} */
-      const requests = keys.map((key) => objects.delete(key));
-      if (value) requests.push(objects.put(value));
+      /** @type {IDBRequest<undefined|IDBValidKey>[]} */
+      const requests = [];
+      for (const key of keys) requests.push(/** @type {IDBRequest<undefined|IDBValidKey>} */ (objects.delete(key)));
+      if (value) requests.push(/** @type {IDBRequest<undefined|IDBValidKey>} */ (objects.put(value)));
       return requests[requests.length - 1];
     });
   }

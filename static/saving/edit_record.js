@@ -100,8 +100,8 @@ export function readRecord({ base, ours, sending, question, edits, added = [], s
  * @param {NonNullable<StoredRecord["sending"]>} sending
  * @returns {sending is {saveId: string, body: SaveBody, edits?: number}}
  */
-function isComplete({ body }) {
-  return Number.isInteger(body.revision);
+function isComplete(sending) {
+  return Number.isInteger(sending.body.revision);
 }
 
 /**

@@ -95,10 +95,9 @@ export class Journal {
     /** @type {Recovered[]|undefined} */
     const records = await this._tried(async ({ database, layer, tab: { name, alive } }) => {
       const former = this._formerly === null ? [] : await database.ofLayer(FRAMES, this._formerly);
-      return [
-        ...(await database.ofLayer(FRAMES, layer)),
-        ...former.map((one) => ({ ...one, formerly: true })),
-      ].filter(({ tab }) => tab === name || !alive.has(tab));
+      return [...(await database.ofLayer(FRAMES, layer)), ...former.map((one) => ({ ...one, formerly: true }))].filter(
+        ({ tab }) => tab === name || !alive.has(tab),
+      );
     });
     return (records ?? []).sort((one, other) => one.at - other.at);
   }

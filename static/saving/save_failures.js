@@ -1,7 +1,28 @@
-/** What a save that failed tells: whether to try again, what to merge with, what to say. */
+/** Asking the server to save, and what a failure tells: whether to try again, what to merge with, what to say. */
 import { ApiError, NetworkError } from "../base/api.js";
 
-/** @typedef {"offline"|"server"|"signed_out"} Trouble it may go away by itself */
+/**
+ * @typedef {import("../base/answers.js").FrameAnswer} FrameAnswer
+ * @typedef {import("../base/answers.js").SaveBody} SaveBody
+ * @typedef {{keepalive?: boolean}} SendOptions
+ * @typedef {"offline"|"server"|"signed_out"} Trouble it may go away by itself
+ */
+
+/**
+ * The server's receipt, or why there is none; never rejects.
+ * @param {Pick<import("../base/api.js").Api, "saveFrame">} api @param {number} frame @param {SaveBody} body
+ * @param {SendOptions} options
+ * @returns {Promise<{answer: FrameAnswer}|{error: unknown}>}
+ */
+export async function saved(api, frame, body, options) {
+  try {
+    const answer = await api.saveFrame(frame, body, options);
+    if (Number.isInteger(answer?.revision)) return { answer };
+    return { error: new ApiError(200, "unreadable", "the answer is no receipt") }; // somebody else's, on the way
+  } catch (error) {
+    return { error };
+  }
+}
 
 /**
  * @returns {"signed_out"|"offline"|"server"}

@@ -2,7 +2,7 @@ import { gettext, ngettext } from "../base/messages.js";
 
 /**
  * The saved state in words. @returns {{text: string, link?: string}} `link`: the part to press, if any
- * @param {import("./saver.js").Status} status @param {number} revision @param {boolean} [tutorial]
+ * @param {import("./save_status.js").Status} status @param {number|null} revision @param {boolean} [tutorial]
  */
 export function saveWords(status, revision, tutorial = false) {
   if (tutorial) return { text: gettext("Tutorial – nothing has to be saved") };

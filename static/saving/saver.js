@@ -4,7 +4,8 @@ import { uuid4 } from "../base/identifiers.js";
 import { annotation, carriedOf } from "../truth/annotation.js";
 import { mergeFlag, mergePeople } from "../truth/merge.js";
 import { baseOf, isSame, plain, readRecord, recordOf, stateOf } from "./edit_record.js";
-import { currentOf, refusalWords, troubleOf } from "./save_failures.js";
+import { currentOf, refusalWords, saved, troubleOf } from "./save_failures.js";
+import { statusOf } from "./save_status.js";
 
 const DELAY = 700; // ms from an edit to its save
 const FIRST_RETRY = 1000;
@@ -20,18 +21,15 @@ const REFUSALS = [400, 404, 413]; // sending the same again would not help
  * `renumber` {from, to, frames}: a new person of ours got another number, because somebody else had taken it.
  *
  * @typedef {import("../base/answers.js").FrameAnswer} FrameAnswer
- * @typedef {import("../base/answers.js").SaveBody} SaveBody
  * @typedef {import("./edit_record.js").State} State
  * @typedef {import("./edit_record.js").Base} Base
  * @typedef {import("./edit_record.js").Kept} Kept
  * @typedef {import("./edit_record.js").Question} Question
  * @typedef {import("./edit_record.js").Sending} Sending
  * @typedef {import("./edit_record.js").Slot} Slot
- * @typedef {{keepalive?: boolean}} SendOptions
+ * @typedef {import("./save_failures.js").SendOptions} SendOptions
  * @typedef {import("./save_failures.js").Trouble} Trouble
- * @typedef {{kind: "saved"|"saving"|"conflict", unsaved: number}
- *          |{kind: Trouble, unsaved: number, kept: boolean}
- *          |{kind: "refused"|"read_only", reason: string, unsaved: number}} Status `kept`: they survive a crash
+ * @typedef {import("./save_status.js").Status} Status
  * @typedef {object} SaverEvents
  * @property {void} status
  * @property {Question} conflict
@@ -141,14 +139,8 @@ export class Saver extends Emitter {
 
   /** @returns {Status} */
   status() {
-    const unsaved = this.unsaved;
-    const slots = [...this._slots.values()];
-    if (this._readOnly !== null) return { kind: "read_only", reason: this._readOnly, unsaved };
-    if (slots.some((slot) => slot.question)) return { kind: "conflict", unsaved };
-    const refused = slots.find((slot) => slot.refused)?.refused;
-    if (refused) return { kind: "refused", reason: refused, unsaved };
-    if (this._trouble) return { kind: this._trouble, unsaved, kept: this._journal.keeps };
-    return { kind: unsaved ? "saving" : "saved", unsaved };
+    const { unsaved, _trouble: trouble, _readOnly: readOnly } = this;
+    return statusOf([...this._slots.values()], { unsaved, trouble, readOnly, kept: this._journal.keeps });
   }
 
   /** @param {number} frame one that was installed; TypeError otherwise */
@@ -276,25 +268,12 @@ export class Saver extends Emitter {
   /** @param {number} frame @param {Slot} slot @param {Sending} sending @param {SendOptions} options */
   async _deliver(frame, slot, sending, options) {
     const retry = this._retry; // of all that are sent together, so that they make one step of waiting longer
-    const asked = await this._asked(frame, sending.body, options);
+    const asked = await saved(this._api, frame, sending.body, options);
     slot.busy = null;
     if ("error" in asked) this._fail(frame, slot, asked.error, retry);
     else this._acknowledge(frame, slot, sending, asked.answer);
     if (slot.edits && !this._trouble) this._schedule(DELAY);
     this.emit("status");
-  }
-
-  /**
-   * @param {number} frame @param {SaveBody} body @param {SendOptions} options @returns {Promise<{answer: FrameAnswer}|{error: unknown}>}
-   */
-  async _asked(frame, body, options) {
-    try {
-      const answer = await this._api.saveFrame(frame, body, options);
-      if (Number.isInteger(answer?.revision)) return { answer };
-      return { error: new ApiError(200, "unreadable", "the answer is no receipt") }; // somebody else's, on the way
-    } catch (error) {
-      return { error };
-    }
   }
 
   /** @param {number} frame @param {Slot} slot @returns {Sending|null} */

@@ -5,16 +5,16 @@ import { byPerson } from "./annotation.js";
 
 /**
  * What does not change while annotating: cameras, grid, cylinder, frames; and the geometry between them.
- * @typedef {import("./annotation.js").Annotation} Annotation
  * @typedef {import("../base/answers.js").SceneAnswer} Answer
  * @typedef {import("../geometry/camera.js").AnyCamera} AnyCamera
  * @typedef {import("../geometry/rectangle.js").Rectangle} Rectangle
  * @typedef {{x: number, y: number}} XY
+ * @typedef {Readonly<{position: number, height: number|null, radius: number|null}>} Placed as annotations are
  * @typedef {{height?: number|null, radius?: number|null}} Sizing metres; what is not said is as usual
  * @typedef {{number: number, people: import("./annotation.js").People}} Neighbour an accepted frame beside the batch
  * @typedef {{before: Neighbour[], after: Neighbour[]}} Neighbours
  * @typedef {object} AskedBoxes what answers for tables: see tables/own_sizes.js
- * @property {(index: number, annotation: Annotation) => Rectangle|null} rectangle
+ * @property {(index: number, placed: Placed) => Rectangle|null} rectangle
  * @property {(name: "change", listener: () => void) => unknown} on
  */
 export class Scene {
@@ -41,7 +41,7 @@ export class Scene {
     this.sizes = json.sizes; // {height, radius}: [least, most] metres a person may have
     this.footRule = json.foot_rule;
     this.neighbours = readNeighbours(json.neighbours);
-    /** @type {WeakMap<Annotation, (Rectangle|null)[]>} */
+    /** @type {WeakMap<Placed, (Rectangle|null)[]>} */
     this._rectangles = new WeakMap();
     /** @type {AskedBoxes|null} */
     this.ownSizes = null;
@@ -49,7 +49,7 @@ export class Scene {
 
   /**
    * Rectangles of one annotation in all views, `null` where not visible; computed once per annotation.
-   * @param {Annotation} annotation @returns {(Rectangle|null)[]}
+   * @param {Placed} annotation @returns {(Rectangle|null)[]}
    */
   rectangles(annotation) {
     let rectangles = this._rectangles.get(annotation);
@@ -62,7 +62,7 @@ export class Scene {
 
   /**
    * The usual person is looked up, once the table is here; others are computed by the same rule.
-   * @param {number} index of the camera @param {Annotation} annotation
+   * @param {number} index of the camera @param {Placed} annotation
    */
   _rectangle(index, annotation) {
     const [camera, boxes] = [this.cameras[index], this._tables[index]];
@@ -98,7 +98,7 @@ export class Scene {
 
   /**
    * Number of views in which the person is visible.
-   * @param {Annotation} annotation
+   * @param {Placed} annotation
    */
   seenBy(annotation) {
     return this.rectangles(annotation).filter((one) => one !== null).length;

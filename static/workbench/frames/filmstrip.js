@@ -136,7 +136,9 @@ export class Filmstrip {
    * @param {number} number
    */
   _fetch(number) {
-    const done = () => (this._fetching = null);
+    const done = () => {
+      this._fetching = null;
+    };
     this._fetching ??= this.loader.load(number, false).then(done, done);
   }
 

@@ -135,7 +135,11 @@ export class FrameHistory {
       element("strong", {}, `r${revision}`),
       element("time", { dateTime: at, title: new Date(at).toLocaleString() }, timeWords(new Date(at))),
       element("span", { className: "author" }, author || gettext("unknown")),
-      element("span", {}, [count, done ? gettext("done") : "", newest ? gettext("newest") : ""].filter(Boolean).join(" · ")),
+      element(
+        "span",
+        {},
+        [count, done ? gettext("done") : "", newest ? gettext("newest") : ""].filter(Boolean).join(" · "),
+      ),
     );
   }
 
@@ -175,7 +179,7 @@ export class FrameHistory {
     /** @type {(people: People, test: (person: number) => boolean) => number} */
     const count = (people, test) => [...people.keys()].filter(test).length;
     /** @type {[number, (n: number) => string][]} */
-    const parts = [
+    const counted = [
       [
         count(then, (person) => !now.has(person)),
         (n) => ngettext("{n} person is not there now", "{n} people are not there now", n),
@@ -188,7 +192,8 @@ export class FrameHistory {
         count(then, (person) => now.has(person) && !same(now.get(person), then.get(person))),
         (n) => ngettext("{n} person was different", "{n} people were different", n),
       ],
-    ].filter(([n]) => n > 0);
+    ];
+    const parts = counted.filter(([n]) => n > 0);
     setText(
       this._words,
       parts.length ? parts.map(([n, words]) => words(n)).join("; ") : gettext("Everybody stands where they stand now."),
@@ -197,12 +202,13 @@ export class FrameHistory {
 
   /** @param {import("../../views/pane.js").Pane} pane */
   _ghosts(pane) {
-    if (!this._shown) return [];
+    const { transform } = pane;
+    if (!this._shown || !transform) return [];
     const now = this.store.people();
     return [...this._shown.people.values()]
       .filter((one) => !same(one, now.get(one.person)) && pane.view.box(one))
       .map((one) => ({
-        ...pane.view.item(one, LOOKS.ghost, pane.transform, this.panes.options),
+        ...pane.view.item(one, LOOKS.ghost, transform, this.panes.options),
         id: `was ${one.person}`,
       }));
   }

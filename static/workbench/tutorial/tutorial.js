@@ -178,5 +178,6 @@ export class Tutorial {
  * @param {KeyboardEvent} event
  */
 function keepForButtons(event) {
-  if (event.target instanceof Element && event.target.closest("button") && ["Enter", " "].includes(event.key)) event.stopPropagation();
+  if (event.target instanceof Element && event.target.closest("button") && ["Enter", " "].includes(event.key))
+    event.stopPropagation();
 }
