@@ -21,20 +21,16 @@ const REFUSALS = [400, 404, 413]; // sending the same again would not help
  * `renumber` {from, to, frames}: a new person of ours got another number, because somebody else had taken it.
  *
  * @typedef {import("../base/answers.js").FrameAnswer} FrameAnswer
+ * @typedef {import("../truth/annotation.js").Annotation} Annotation
+ * @typedef {import("../truth/store.js").Source} Source
  * @typedef {import("./edit_record.js").State} State
  * @typedef {import("./edit_record.js").Base} Base
- * @typedef {import("./edit_record.js").Kept} Kept
  * @typedef {import("./edit_record.js").Question} Question
  * @typedef {import("./edit_record.js").Sending} Sending
  * @typedef {import("./edit_record.js").Slot} Slot
  * @typedef {import("./save_failures.js").SendOptions} SendOptions
- * @typedef {import("./save_failures.js").Trouble} Trouble
- * @typedef {import("./save_status.js").Status} Status
- * @typedef {object} SaverEvents
- * @property {void} status
- * @property {Question} conflict
- * @property {{from: number, to: number, frames: number[]}} renumber
- * @extends {Emitter<SaverEvents>}
+ * @typedef {{from: number, to: number, frames: number[]}} Renumbered
+ * @extends {Emitter<{status: void, conflict: Question, renumber: Renumbered}>}
  */
 export class Saver extends Emitter {
   /**
@@ -53,7 +49,7 @@ export class Saver extends Emitter {
     this._activity = activity;
     /** @type {Map<number, Slot>} */
     this._slots = new Map();
-    /** @type {Trouble|null} */
+    /** @type {import("./save_failures.js").Trouble|null} */
     this._trouble = null;
     this._retry = 0;
     /** @type {ReturnType<typeof setTimeout>|null} */
@@ -115,7 +111,7 @@ export class Saver extends Emitter {
     this._schedule(0);
   }
 
-  /** @param {number} frame @param {Slot} slot @param {Kept & {base: Base}} kept */
+  /** @param {number} frame @param {Slot} slot @param {import("./edit_record.js").Kept & {base: Base}} kept */
   _goOn(frame, slot, { base, ours, sending, question }) {
     Object.assign(slot, { base, sending, question });
     this._store.install(frame, ours, "journal");
@@ -137,7 +133,7 @@ export class Saver extends Emitter {
     return new Set([...this._slots].filter(([, { edits }]) => edits > 0).map(([frame]) => frame));
   }
 
-  /** @returns {Status} */
+  /** @returns {import("./save_status.js").Status} */
   status() {
     const { unsaved, _trouble: trouble, _readOnly: readOnly } = this;
     return statusOf([...this._slots.values()], { unsaved, trouble, readOnly, kept: this._journal.keeps });
@@ -205,7 +201,8 @@ export class Saver extends Emitter {
    */
   resolve(frame, choices) {
     const slot = this._slot(frame);
-    const edits = (slot.question?.conflicts ?? [])
+    if (!slot.question) throw new TypeError(`frame ${frame} has nothing to decide`);
+    const edits = slot.question.conflicts
       .filter(({ person }) => choices.get(person) === "theirs")
       .map(({ person, theirs }) => ({ frame, person, after: theirs ?? null }));
     slot.question = null;
@@ -213,7 +210,7 @@ export class Saver extends Emitter {
     this._settle(frame, slot);
   }
 
-  /** @param {Set<number>} frames @param {import("../truth/store.js").Source} source */
+  /** @param {Set<number>} frames @param {Source} source */
   _onChange(frames, source) {
     if (source !== "edit") return;
     for (const frame of frames) {
@@ -247,10 +244,7 @@ export class Saver extends Emitter {
     return slot.edits > 0 && !slot.question && !slot.refused && this._readOnly === null;
   }
 
-  /**
-   * @returns {Promise<void>} when it has been answered; never rejects
-   * @param {number} frame @param {SendOptions} [options]
-   */
+  /** @param {number} frame @param {SendOptions} [options] @returns {Promise<void>} when it has been answered; never rejects */
   _send(frame, options = {}) {
     const slot = this._slot(frame);
     if (slot.busy) return slot.busy;
@@ -348,7 +342,7 @@ export class Saver extends Emitter {
 
   /**
    * The frame as the store has it, and `theirs`, which both come from `base`.
-   * @param {number} frame @param {Slot} slot @param {State} base @param {State} theirs @param {import("../truth/store.js").Source} source
+   * @param {number} frame @param {Slot} slot @param {State} base @param {State} theirs @param {Source} source
    * @param {{author?: string, savedAt?: string|null}} [who]
    */
   _bringTogether(frame, slot, base, theirs, source, { author = "", savedAt = null } = {}) {
@@ -362,10 +356,7 @@ export class Saver extends Emitter {
       { people, nobody, done: mergeFlag(base.done, now.done, theirs.done) && finished },
       source,
     );
-    for (const person of renumber) {
-      const one = ours.get(person);
-      if (one) this._renumber(frame, one);
-    }
+    for (const one of renumber.flatMap((person) => ours.get(person) ?? [])) this._renumber(frame, one);
     if (!conflicts.length) return;
     slot.question = { frame, conflicts, author, savedAt };
     this.emit("conflict", slot.question);
@@ -373,7 +364,7 @@ export class Saver extends Emitter {
 
   /**
    * Somebody else gave away the same number: our new person gets another one, wherever we have put it.
-   * @param {number} frame @param {import("../truth/annotation.js").Annotation} one
+   * @param {number} frame @param {Annotation} one
    */
   _renumber(frame, one) {
     const { person: from } = one;
@@ -381,9 +372,7 @@ export class Saver extends Emitter {
     const others = [...this._slots]
       .filter(([number, slot]) => number !== frame && this._isOurs(slot, number, from))
       .map(([number]) => number);
-    /**
-     * @type {(number: number, old: import("../truth/annotation.js").Annotation) => import("../truth/store.js").PersonEdit}
-     */
+    /** @type {(number: number, old: Annotation) => import("../truth/store.js").PersonEdit} */
     const moved = (number, old) => ({ frame: number, person: to, after: annotation({ ...old, person: to }) });
     this._store.apply([
       moved(frame, one),
