@@ -1,10 +1,15 @@
 import { ask } from "../base/dialogs.js";
-import { element } from "../base/dom.js";
+import { element, required } from "../base/dom.js";
 import { gettext } from "../base/messages.js";
 
 /**
  * Somebody else (or another tab) changed the same people: ask for each whose version stays.
- * @returns {Promise<Map<number, "ours"|"theirs">>}
+ * @returns {Promise<Map<number, Side>>}
+ * @typedef {"ours"|"theirs"} Side
+ * @typedef {import("../truth/scene.js").Scene} Scene
+ * @typedef {import("../truth/merge.js").Conflict} Conflict
+ * @param {Scene} scene @param {import("../truth/store.js").Store} store
+ * @param {import("./edit_record.js").Question} question
  */
 export async function askAboutConflicts(scene, store, { frame, conflicts, author, savedAt }) {
   const place = store.numbers.indexOf(frame) + 1;
@@ -19,17 +24,27 @@ export async function askAboutConflicts(scene, store, { frame, conflicts, author
     buttons: [{ id: "apply", label: gettext("Use these"), main: true }],
   };
   while ((await ask(question)) !== "apply"); // Escape decides nothing
-  return new Map(conflicts.map(({ person }, index) => [person, rows[index].querySelector("input:checked").value]));
+  return new Map(conflicts.map(({ person }, index) => [person, chosen(rows[index])]));
 }
 
-/** Who the other is, as far as is known: another tab does not say. */
+/** @param {HTMLElement} row @returns {Side} */
+function chosen(row) {
+  return required(row, "input:checked", HTMLInputElement).value === "theirs" ? "theirs" : "ours";
+}
+
+/**
+ * Who the other is, as far as is known: another tab does not say.
+ * @param {string} author @param {string|null} savedAt
+ */
 function otherWords(author, savedAt) {
   if (!author) return gettext("the other");
-  const time = new Date(savedAt).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" });
+  const time = new Date(savedAt ?? 0).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" });
   return gettext("the other, by {author} at {time}", { author, time });
 }
 
+/** @param {Scene} scene @param {Conflict} conflict @param {string} other */
 function conflictRow(scene, { person, ours, theirs }, other) {
+  /** @type {(value: Side, text: string, one: Conflict["ours"], checked: boolean) => HTMLElement} */
   const choice = (value, text, annotation, checked) =>
     element(
       "label",
@@ -46,6 +61,7 @@ function conflictRow(scene, { person, ours, theirs }, other) {
   );
 }
 
+/** @param {Scene} scene @param {Conflict["ours"]} annotation */
 function describe(scene, annotation) {
   if (!annotation) return gettext("removed");
   const { x, y } = scene.metres(annotation.position);

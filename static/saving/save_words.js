@@ -1,6 +1,9 @@
 import { gettext, ngettext } from "../base/messages.js";
 
-/** The saved state in words. @returns {{text: string, link?: string}} `link`: the part to press, if any */
+/**
+ * The saved state in words. @returns {{text: string, link?: string}} `link`: the part to press, if any
+ * @param {import("./save_status.js").Status} status @param {number|null} revision @param {boolean} [tutorial]
+ */
 export function saveWords(status, revision, tutorial = false) {
   if (tutorial) return { text: gettext("Tutorial – nothing has to be saved") };
   const n = status.unsaved;
@@ -32,10 +35,11 @@ export function saveWords(status, revision, tutorial = false) {
           }
         : { text: gettext("Read-only: {reason}", { reason: status.reason }) };
     default:
-      throw new RangeError(`unknown save state ${status.kind}`);
+      throw new RangeError(`unknown save state ${/** @type {{kind: string}} */ (status).kind}`);
   }
 }
 
+/** @param {{unsaved: number, kept: boolean}} status */
 function kept({ unsaved, kept: durable }) {
   return durable
     ? ngettext("{n} edit kept on this computer", "{n} edits kept on this computer", unsaved)

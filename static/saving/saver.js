@@ -1,9 +1,11 @@
-import { ApiError, NetworkError } from "../base/api.js";
+import { ApiError } from "../base/api.js";
 import { Emitter } from "../base/emitter.js";
 import { uuid4 } from "../base/identifiers.js";
 import { annotation, carriedOf } from "../truth/annotation.js";
 import { mergeFlag, mergePeople } from "../truth/merge.js";
 import { baseOf, isSame, plain, readRecord, recordOf, stateOf } from "./edit_record.js";
+import { currentOf, refusalWords, saved, troubleOf } from "./save_failures.js";
+import { statusOf } from "./save_status.js";
 
 const DELAY = 700; // ms from an edit to its save
 const FIRST_RETRY = 1000;
@@ -17,24 +19,47 @@ const REFUSALS = [400, 404, 413]; // sending the same again would not help
  *
  * Events: `status` (look at `status()`), `conflict` {frame, conflicts, author, savedAt} (or ask `conflicts()`),
  * `renumber` {from, to, frames}: a new person of ours got another number, because somebody else had taken it.
+ *
+ * @typedef {import("../base/answers.js").FrameAnswer} FrameAnswer
+ * @typedef {import("../truth/annotation.js").Annotation} Annotation
+ * @typedef {import("../truth/store.js").Source} Source
+ * @typedef {import("./edit_record.js").State} State
+ * @typedef {import("./edit_record.js").Base} Base
+ * @typedef {import("./edit_record.js").Question} Question
+ * @typedef {import("./edit_record.js").Sending} Sending
+ * @typedef {import("./edit_record.js").Slot} Slot
+ * @typedef {import("./save_failures.js").SendOptions} SendOptions
+ * @typedef {{from: number, to: number, frames: number[]}} Renumbered
+ * @extends {Emitter<{status: void, conflict: Question, renumber: Renumbered}>}
  */
 export class Saver extends Emitter {
-  /** @param {{practice: boolean}} parts in practice (the tutorial) nothing is saved */
+  /**
+   * @param {object} parts
+   * @param {Pick<import("../base/api.js").Api, "saveFrame">} parts.api
+   * @param {import("../truth/store.js").Store} parts.store
+   * @param {Pick<import("./journal.js").Journal, "keeps"|"write"|"clear">} parts.journal
+   * @param {import("./activity.js").Activity} parts.activity
+   * @param {boolean} [parts.practice] in practice (the tutorial) nothing is saved
+   */
   constructor({ api, store, journal, activity, practice = false }) {
     super();
     this._api = api;
     this._store = store;
     this._journal = journal;
     this._activity = activity;
+    /** @type {Map<number, Slot>} */
     this._slots = new Map();
-    this._trouble = null; // "offline" | "server" | "signed_out"
+    /** @type {import("./save_failures.js").Trouble|null} */
+    this._trouble = null;
     this._retry = 0;
+    /** @type {ReturnType<typeof setTimeout>|null} */
     this._timer = null;
+    /** @type {string|null} */
     this._readOnly = null;
     if (!practice) store.on("change", ({ frames, source }) => this._onChange(frames, source));
   }
 
-  /** Take the server's state of a frame as the base of the next edits. */
+  /** Take the server's state of a frame as the base of the next edits. @param {FrameAnswer} state */
   install(state) {
     const { number } = state;
     const added = this._slots.get(number)?.added ?? new Set();
@@ -50,23 +75,30 @@ export class Saver extends Emitter {
     this._store.install(number, baseOf(state), "server");
   }
 
-  /** The server's state of a frame that was asked for anew: what was edited or saved meanwhile stays. */
+  /**
+   * The server's state of a frame that was asked for anew: what was edited or saved meanwhile stays.
+   * @param {FrameAnswer} state
+   */
   refresh(state) {
-    const slot = this._slots.get(state.number);
+    const slot = this._slot(state.number);
     if (slot.edits === 0 && slot.base.revision <= state.revision) return this.install(state);
     // A save that has begun brings the newer state itself.
     if (slot.edits && !slot.sending && !slot.question && slot.base.revision < state.revision)
       this._merge(state.number, slot, state);
   }
 
-  /** Edits of an earlier visit that the server may not have: they go on from where they started. */
+  /**
+   * Edits of an earlier visit that the server may not have: they go on from where they started.
+   * @param {{frame: number} & import("./edit_record.js").StoredRecord} record
+   */
   adopt(record) {
     const { frame } = record;
     const slot = this._slots.get(frame);
     if (!slot) return;
     const kept = readRecord(record);
     const untouched = slot.edits === 0;
-    if (untouched && kept.base.revision !== undefined) this._goOn(frame, slot, kept);
+    const { revision } = kept.base;
+    if (untouched && revision !== undefined) this._goOn(frame, slot, { ...kept, base: { ...kept.base, revision } });
     else {
       const base = slot.base;
       if (untouched) this._store.install(frame, kept.ours, "journal");
@@ -79,11 +111,13 @@ export class Saver extends Emitter {
     this._schedule(0);
   }
 
+  /** @param {number} frame @param {Slot} slot @param {import("./edit_record.js").Kept & {base: Base}} kept */
   _goOn(frame, slot, { base, ours, sending, question }) {
     Object.assign(slot, { base, sending, question });
     this._store.install(frame, ours, "journal");
   }
 
+  /** @param {number} frame */
   revision(frame) {
     return this._slots.get(frame)?.base.revision ?? 0;
   }
@@ -99,16 +133,17 @@ export class Saver extends Emitter {
     return new Set([...this._slots].filter(([, { edits }]) => edits > 0).map(([frame]) => frame));
   }
 
-  /** @returns {{kind: "saved"|"saving"|"offline"|"server"|"signed_out"|"conflict"|"refused"|"read_only", unsaved, …}} */
+  /** @returns {import("./save_status.js").Status} */
   status() {
-    const unsaved = this.unsaved;
-    const slots = [...this._slots.values()];
-    if (this._readOnly !== null) return { kind: "read_only", reason: this._readOnly, unsaved };
-    if (slots.some((slot) => slot.question)) return { kind: "conflict", unsaved };
-    const refused = slots.find((slot) => slot.refused);
-    if (refused) return { kind: "refused", reason: refused.refused, unsaved };
-    if (this._trouble) return { kind: this._trouble, unsaved, kept: this._journal.keeps };
-    return { kind: unsaved ? "saving" : "saved", unsaved };
+    const { unsaved, _trouble: trouble, _readOnly: readOnly } = this;
+    return statusOf([...this._slots.values()], { unsaved, trouble, readOnly, kept: this._journal.keeps });
+  }
+
+  /** @param {number} frame one that was installed; TypeError otherwise */
+  _slot(frame) {
+    const slot = this._slots.get(frame);
+    if (!slot) throw new TypeError(`frame ${frame} is not loaded`);
+    return slot;
   }
 
   /** Why nothing may be changed, or null. */
@@ -116,6 +151,7 @@ export class Saver extends Emitter {
     return this._readOnly;
   }
 
+  /** @param {string} reason */
   makeReadOnly(reason) {
     this._readOnly = reason;
     this.emit("status");
@@ -123,7 +159,7 @@ export class Saver extends Emitter {
 
   /** Save at once; resolves when everything that could be sent has been answered, also what was under way. */
   async flush() {
-    clearTimeout(this._timer);
+    clearTimeout(this._timer ?? undefined);
     this._timer = null;
     await this._underWay();
     for (let round = 0; round < ROUNDS && (round === 0 || this._canGoOn()); round += 1) {
@@ -156,12 +192,16 @@ export class Saver extends Emitter {
 
   /** What the annotator has to decide, also from before a reload: {frame, conflicts, author, savedAt} each. */
   conflicts() {
-    return [...this._slots.values()].map(({ question }) => question).filter(Boolean);
+    return [...this._slots.values()].flatMap(({ question }) => question ?? []);
   }
 
-  /** The annotator decided: per person, "ours" or "theirs". */
+  /**
+   * The annotator decided: per person, "ours" or "theirs".
+   * @param {number} frame @param {Map<number, "ours"|"theirs">} choices
+   */
   resolve(frame, choices) {
-    const slot = this._slots.get(frame);
+    const slot = this._slot(frame);
+    if (!slot.question) throw new TypeError(`frame ${frame} has nothing to decide`);
     const edits = slot.question.conflicts
       .filter(({ person }) => choices.get(person) === "theirs")
       .map(({ person, theirs }) => ({ frame, person, after: theirs ?? null }));
@@ -170,6 +210,7 @@ export class Saver extends Emitter {
     this._settle(frame, slot);
   }
 
+  /** @param {Set<number>} frames @param {Source} source */
   _onChange(frames, source) {
     if (source !== "edit") return;
     for (const frame of frames) {
@@ -183,27 +224,29 @@ export class Saver extends Emitter {
     this.emit("status");
   }
 
+  /** @param {number} frame @param {Slot} slot */
   _keep(frame, slot) {
     this._journal.write(frame, () => recordOf(slot, this._store.frame(frame), this._activity.waiting(frame)));
   }
 
-  /** The first edit starts the clock; later ones don't push it back. */
+  /** The first edit starts the clock; later ones don't push it back. @param {number} delay */
   _schedule(delay) {
     if (this._timer !== null && delay > 0) return;
-    clearTimeout(this._timer);
+    clearTimeout(this._timer ?? undefined);
     this._timer = setTimeout(() => {
       this._timer = null;
       for (const frame of this._slots.keys()) this._send(frame);
     }, delay);
   }
 
+  /** @param {Slot} slot */
   _isToSend(slot) {
     return slot.edits > 0 && !slot.question && !slot.refused && this._readOnly === null;
   }
 
-  /** @returns {Promise<void>} when it has been answered; never rejects */
+  /** @param {number} frame @param {SendOptions} [options] @returns {Promise<void>} when it has been answered; never rejects */
   _send(frame, options = {}) {
-    const slot = this._slots.get(frame);
+    const slot = this._slot(frame);
     if (slot.busy) return slot.busy;
     if (!this._isToSend(slot)) return Promise.resolve();
     slot.sending ??= this._prepare(frame, slot);
@@ -212,30 +255,22 @@ export class Saver extends Emitter {
       return Promise.resolve();
     }
     this._keep(frame, slot);
-    slot.busy = this._deliver(frame, slot, options);
+    slot.busy = this._deliver(frame, slot, slot.sending, options);
     return slot.busy;
   }
 
-  async _deliver(frame, slot, options) {
+  /** @param {number} frame @param {Slot} slot @param {Sending} sending @param {SendOptions} options */
+  async _deliver(frame, slot, sending, options) {
     const retry = this._retry; // of all that are sent together, so that they make one step of waiting longer
-    const { answer, error } = await this._asked(frame, slot.sending.body, options);
+    const asked = await saved(this._api, frame, sending.body, options);
     slot.busy = null;
-    if (error) this._fail(frame, slot, error, retry);
-    else this._acknowledge(frame, slot, answer);
+    if ("error" in asked) this._fail(frame, slot, asked.error, retry);
+    else this._acknowledge(frame, slot, sending, asked.answer);
     if (slot.edits && !this._trouble) this._schedule(DELAY);
     this.emit("status");
   }
 
-  async _asked(frame, body, options) {
-    try {
-      const answer = await this._api.saveFrame(frame, body, options);
-      if (Number.isInteger(answer?.revision)) return { answer };
-      return { error: new ApiError(200, "unreadable", "the answer is no receipt") }; // somebody else's, on the way
-    } catch (error) {
-      return { error };
-    }
-  }
-
+  /** @param {number} frame @param {Slot} slot @returns {Sending|null} */
   _prepare(frame, slot) {
     const now = this._store.frame(frame);
     if (isSame(now, slot.base)) {
@@ -248,18 +283,19 @@ export class Saver extends Emitter {
     return { saveId, body, edits: slot.edits };
   }
 
-  _acknowledge(frame, slot, answer) {
+  /** @param {number} frame @param {Slot} slot @param {Sending} sending @param {FrameAnswer} answer */
+  _acknowledge(frame, slot, sending, answer) {
     this._trouble = null;
     this._retry = 0;
-    const base = { revision: answer.revision, ...stateOf(slot.sending.body) };
+    const base = { revision: answer.revision, ...stateOf(sending.body) };
     for (const person of base.people.keys()) if (!slot.base.people.has(person)) slot.added.add(person);
     slot.base = base;
-    slot.edits -= slot.sending.edits;
+    slot.edits -= sending.edits;
     slot.sending = null;
     this._settle(frame, slot);
   }
 
-  /** After an answer: nothing left to say, or more to send. */
+  /** After an answer: nothing left to say, or more to send. @param {number} frame @param {Slot} slot */
   _settle(frame, slot) {
     if (isSame(this._store.frame(frame), slot.base)) {
       slot.edits = 0;
@@ -272,9 +308,10 @@ export class Saver extends Emitter {
     this.emit("status");
   }
 
+  /** @param {number} frame @param {Slot} slot @param {unknown} error @param {number} retry @returns {void} */
   _fail(frame, slot, error, retry) {
     const known = error instanceof ApiError && error.code !== "unknown";
-    if (known && error.code === "stale") return this._merge(frame, slot, error.details.current);
+    if (known && error.code === "stale") return this._merge(frame, slot, currentOf(error));
     if (known && error.code === "read_only") return this.makeReadOnly(error.message);
     if (known && REFUSALS.includes(error.status)) return this._refuse(frame, slot, error);
     if (known && error.code === "save_id_used") this._takeBack(frame, slot); // the next try has an id of its own
@@ -283,13 +320,16 @@ export class Saver extends Emitter {
     this._schedule(this._retry);
   }
 
-  /** What was sent was not written, for certain. */
+  /** What was sent was not written, for certain. @param {number} frame @param {Slot} slot */
   _takeBack(frame, slot) {
     if (slot.sending) this._activity.giveBack(frame, slot.sending.body.seconds);
     slot.sending = null;
   }
 
-  /** The server has a newer state: both sides' people come together, or the annotator is asked. */
+  /**
+   * The server has a newer state: both sides' people come together, or the annotator is asked.
+   * @param {number} frame @param {Slot} slot @param {FrameAnswer} current
+   */
   _merge(frame, slot, current) {
     const theirs = baseOf(current);
     const { base } = slot;
@@ -300,7 +340,11 @@ export class Saver extends Emitter {
     this._settle(frame, slot);
   }
 
-  /** The frame as the store has it, and `theirs`, which both come from `base`. */
+  /**
+   * The frame as the store has it, and `theirs`, which both come from `base`.
+   * @param {number} frame @param {Slot} slot @param {State} base @param {State} theirs @param {Source} source
+   * @param {{author?: string, savedAt?: string|null}} [who]
+   */
   _bringTogether(frame, slot, base, theirs, source, { author = "", savedAt = null } = {}) {
     const now = this._store.frame(frame);
     const ours = now.people;
@@ -312,46 +356,43 @@ export class Saver extends Emitter {
       { people, nobody, done: mergeFlag(base.done, now.done, theirs.done) && finished },
       source,
     );
-    for (const person of renumber) this._renumber(frame, ours.get(person));
+    for (const one of renumber.flatMap((person) => ours.get(person) ?? [])) this._renumber(frame, one);
     if (!conflicts.length) return;
     slot.question = { frame, conflicts, author, savedAt };
     this.emit("conflict", slot.question);
   }
 
-  /** Somebody else gave away the same number: our new person gets another one, wherever we have put it. */
+  /**
+   * Somebody else gave away the same number: our new person gets another one, wherever we have put it.
+   * @param {number} frame @param {Annotation} one
+   */
   _renumber(frame, one) {
     const { person: from } = one;
     const to = this._store.takePerson();
     const others = [...this._slots]
       .filter(([number, slot]) => number !== frame && this._isOurs(slot, number, from))
       .map(([number]) => number);
+    /** @type {(number: number, old: Annotation) => import("../truth/store.js").PersonEdit} */
     const moved = (number, old) => ({ frame: number, person: to, after: annotation({ ...old, person: to }) });
     this._store.apply([
       moved(frame, one),
       ...others.flatMap((number) => [
         { frame: number, person: from, after: null },
-        moved(number, this._store.person(from, number)),
+        moved(number, this._store.marked(from, number)),
       ]),
     ]);
     this.emit("renumber", { from, to, frames: [frame, ...others] });
   }
 
+  /** @param {Slot} slot @param {number} frame @param {number} person */
   _isOurs(slot, frame, person) {
     return this._store.person(person, frame) !== undefined && (slot.added.has(person) || !slot.base.people.has(person));
   }
 
+  /** @param {number} frame @param {Slot} slot @param {ApiError} error */
   _refuse(frame, slot, error) {
-    const places = Array.isArray(error.details) ? error.details.map(({ place, reason }) => `${place}: ${reason}`) : [];
-    slot.refused = places.length ? places.join("; ") : error.message;
+    slot.refused = refusalWords(error);
     this._takeBack(frame, slot);
     this._keep(frame, slot);
   }
-}
-
-/** @returns {"signed_out"|"offline"|"server"} */
-function troubleOf(error) {
-  if (error instanceof NetworkError) return "offline";
-  if (error instanceof ApiError) return error.signedOut ? "signed_out" : "server";
-  console.error(error); // nobody foresaw it: tried again, less and less often, like everything else
-  return "server";
 }

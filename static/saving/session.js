@@ -14,7 +14,7 @@ import { Saver } from "./saver.js";
  */
 
 /**
- * @param started what start.js has asked for already
+ * @param {import("../workbench/start.js").Started} started what start.js has asked for already
  * @param {(words: string) => void} say what takes long
  * @returns {Promise<Session>}
  */
@@ -41,6 +41,7 @@ export async function openSession({ api, scene: answer, first, images }, say) {
 /**
  * Under which name edits are kept, and under which earlier versions kept them; the tutorial keeps none.
  * Numbers of layers begin anew in every database, so the server gives a key that no other layer has.
+ * @param {import("../truth/scene.js").Scene} scene @returns {[layer: string|null, formerly?: string]}
  */
 function layerNames({ mode, layer }) {
   if (mode === "tutorial") return [null];
@@ -49,7 +50,10 @@ function layerNames({ mode, layer }) {
   return [`${mode} ${layer.key}${part}`, `${mode} ${layer.id}${part}`];
 }
 
-/** Edits the server never acknowledged, and the undo steps, as they were before a reload. */
+/**
+ * Edits the server never acknowledged, and the undo steps, as they were before a reload.
+ * @param {Pick<Session, "scene"|"journal"|"saver"|"loader"|"history"|"store">} session
+ */
 async function recover({ scene, journal, saver, loader, history, store }) {
   for (const record of await journal.recover()) {
     if (!store.frame(record.frame)) continue; // it stays where it is: the frame may come back
@@ -67,7 +71,10 @@ async function recover({ scene, journal, saver, loader, history, store }) {
   history.on("change", keep);
 }
 
-/** A layer is older than its edits, and its frames have at least the revision that the edits started from. */
+/**
+ * A layer is older than its edits, and its frames have at least the revision that the edits started from.
+ * @param {import("./journal.js").Recovered} record @param {import("../base/answers.js").LayerPart} layer @param {number} revision
+ */
 function isOfThisLayer({ formerly, at, base }, layer, revision) {
-  return !formerly || (at >= Date.parse(layer.created_at) && (base.revision ?? 0) <= revision);
+  return !formerly || (at >= Date.parse(layer.created_at ?? "") && (base.revision ?? 0) <= revision);
 }

@@ -39,9 +39,10 @@ export function uncertaintyAt(scene, panes, pane, ground, z) {
  * @param {Scene} scene @param {ShownView} pane @param {XY} ground @param {number} z @returns {Information|null}
  */
 function information(scene, { view, transform, room }, { x, y }, z) {
-  if (view.index === null || !transform) return null;
+  const { index } = view;
+  if (index === null || !transform) return null;
   /** @param {number} dx @param {number} dy */
-  const seen = (dx, dy) => scene.toImage(view.index, { x: x + dx, y: y + dy }, z);
+  const seen = (dx, dy) => scene.toImage(index, { x: x + dx, y: y + dy }, z);
   const [foot, east, north] = [seen(0, 0), seen(0.01, 0), seen(0, 0.01)];
   if (!foot || !east || !north || !isShown(foot, view, transform, room)) return null;
   const spread = 0.01 * MISS;

@@ -1,11 +1,21 @@
 import { ApiError } from "../../base/api.js";
 import { ask } from "../../base/dialogs.js";
-import { element } from "../../base/dom.js";
+import { element, required } from "../../base/dom.js";
 import { failureWords } from "../../base/failure_words.js";
 import { gettext, ngettext } from "../../base/messages.js";
 import { carriedOf } from "../../truth/annotation.js";
 
-/** What there is to say about every frame of a batch before it is handed in. */
+/**
+ * @typedef {import("../../truth/store.js").Store} Store
+ * @typedef {{api: import("../../base/api.js").Api, navigation: import("./navigation.js").Navigation,
+ *            notices: import("../../base/notices.js").Notices, home: string}} Handing what handing in needs
+ * @typedef {{number: number, place: number, people: number, carried: number, done: boolean}} Row of a frame
+ */
+
+/**
+ * What there is to say about every frame of a batch before it is handed in.
+ * @param {Store} store
+ */
 export function summary(store) {
   return store.numbers.map((number, index) => {
     const { people, done } = store.frame(number);
@@ -13,7 +23,10 @@ export function summary(store) {
   });
 }
 
-/** The summary after the last frame; submits, or jumps to a frame. */
+/**
+ * The summary after the last frame; submits, or jumps to a frame.
+ * @param {Handing & {store: Store, saver: import("../../saving/saver.js").Saver}} parts
+ */
 export async function finishAssignment({ store, saver, api, navigation, notices, home }) {
   const saved = await saver.flush();
   const rows = summary(store);
@@ -37,7 +50,8 @@ export async function finishAssignment({ store, saver, api, navigation, notices,
   const stop = saver.on("status", () => {
     if (saver.unsaved) return;
     waiting.hidden = true;
-    waiting.closest("dialog").querySelector('[data-answer="submit"]').disabled = unfinished.length > 0;
+    const dialog = waiting.closest("dialog");
+    if (dialog) required(dialog, '[data-answer="submit"]', HTMLButtonElement).disabled = unfinished.length > 0;
   });
   const answer = await answered.finally(stop);
   if (answer === "first") return navigation.open(unfinished[0].number);
@@ -45,17 +59,24 @@ export async function finishAssignment({ store, saver, api, navigation, notices,
   if (answer === "submit") return submit({ api, navigation, notices, home });
 }
 
+/** @param {Handing} parts */
 async function submit({ api, navigation, notices, home }) {
   try {
     await api.submit();
     window.location.assign(home);
   } catch (error) {
-    const frames = error instanceof ApiError && error.code === "unfinished" ? error.details.frames : [];
+    const frames = error instanceof ApiError && error.code === "unfinished" ? unfinishedIn(error) : [];
     notices.say(gettext("Not submitted: {reason}", { reason: failureWords(error) }));
     if (frames.length) return navigation.open(frames[0]);
   }
 }
 
+/** @param {ApiError} error */
+function unfinishedIn({ details }) {
+  return (details && !Array.isArray(details) && details.frames) || [];
+}
+
+/** @param {Row[]} rows */
 function table(rows) {
   const head = [gettext("Frame"), gettext("People"), gettext("State"), ""];
   return element(
@@ -74,13 +95,15 @@ function table(rows) {
   );
 }
 
+/** @param {Row} row */
 function tableRow({ number, place, people, carried, done }) {
   const state = done
     ? gettext("done")
     : carried
       ? ngettext("{n} yellow", "{n} yellow", carried)
       : gettext("not finished");
-  const go = (event) => event.target.closest("dialog").close(`frame ${number}`);
+  /** @param {Event} event */
+  const go = ({ target }) => target instanceof Element && target.closest("dialog")?.close(`frame ${number}`);
   return element(
     "tr",
     { className: done ? "done" : "open" },

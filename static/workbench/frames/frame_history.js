@@ -8,13 +8,35 @@ import { LOOKS } from "../../views/styles.js";
 import { keyFor } from "../keys/keys.js";
 
 /**
+ * @typedef {import("../../truth/annotation.js").People} People
+ * @typedef {{revision: number, people: People, done: boolean, nobody: boolean}} Shown a save, drawn as ghosts
+ */
+
+/**
  * Who saved the open frame, and when: a list beside the views. The chosen save is drawn in the views as ghosts
  * over what is there now; restoring it is an edit like any other.
  */
 export class FrameHistory {
+  /**
+   * @param {object} parts
+   * @param {import("../../base/api.js").Api} parts.api
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../saving/saver.js").Saver} parts.saver
+   * @param {import("../../truth/history.js").History} parts.history
+   * @param {import("../../views/panes.js").Panes} parts.panes
+   * @param {import("../../base/notices.js").Notices} parts.notices
+   * @param {import("../placing/guard.js").Guard} parts.guard
+   */
   constructor({ api, store, saver, history, panes, notices, guard }) {
-    Object.assign(this, { api, store, saver, history, panes, notices, guard });
-    this._shown = null; // {revision, people, done, nobody} drawn as ghosts
+    this.api = api;
+    this.store = store;
+    this.saver = saver;
+    this.history = history;
+    this.panes = panes;
+    this.notices = notices;
+    this.guard = guard;
+    /** @type {Shown|null} */
+    this._shown = null;
     this._asked = 0; // only the newest answer counts
     this._list = element("div", {
       className: "revisions",
@@ -44,7 +66,7 @@ export class FrameHistory {
     );
     panes.addExtra((pane) => this._ghosts(pane));
     store.on("frame", () => !this.element.hidden && this._load());
-    store.on("change", () => this._shown && this._describe());
+    store.on("change", () => this._shown && this._describe(this._shown));
   }
 
   toggle() {
@@ -80,7 +102,7 @@ export class FrameHistory {
     this._asked += 1;
     this.element.hidden = true;
     this._show(null);
-    document.activeElement?.blur();
+    if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
   }
 
   restore() {
@@ -103,6 +125,7 @@ export class FrameHistory {
     this.open();
   }
 
+  /** @param {number} number @param {import("../../base/answers.js").Revision} save @param {boolean} newest */
   _row(number, { revision, created_at: at, author, people, done }, newest) {
     const count = ngettext("{n} person", "{n} people", people);
     return element(
@@ -112,10 +135,15 @@ export class FrameHistory {
       element("strong", {}, `r${revision}`),
       element("time", { dateTime: at, title: new Date(at).toLocaleString() }, timeWords(new Date(at))),
       element("span", { className: "author" }, author || gettext("unknown")),
-      element("span", {}, [count, done && gettext("done"), newest && gettext("newest")].filter(Boolean).join(" · ")),
+      element(
+        "span",
+        {},
+        [count, done ? gettext("done") : "", newest ? gettext("newest") : ""].filter(Boolean).join(" · "),
+      ),
     );
   }
 
+  /** @param {number} number @param {number} revision */
   async _choose(number, revision) {
     this._asked += 1;
     const asked = this._asked;
@@ -124,6 +152,7 @@ export class FrameHistory {
     this._show({ revision, people: byPerson(state.annotations), done: state.done, nobody: state.nobody });
   }
 
+  /** @template Answer @param {number} asked @param {() => Promise<Answer>} question @returns {Promise<Answer|null>} */
   async _ask(asked, question) {
     try {
       return await question();
@@ -134,20 +163,23 @@ export class FrameHistory {
     }
   }
 
+  /** @param {Shown|null} shown */
   _show(shown) {
     this._shown = shown;
     this._restore.disabled = shown === null;
-    if (shown) this._describe();
+    if (shown) this._describe(shown);
     else this._list.replaceChildren();
     this.panes.markPeople();
   }
 
-  /** What the chosen save has different from now. */
-  _describe() {
+  /** What the chosen save has different from now. @param {Shown} shown */
+  _describe(shown) {
     const now = this.store.people();
-    const then = this._shown.people;
+    const then = shown.people;
+    /** @type {(people: People, test: (person: number) => boolean) => number} */
     const count = (people, test) => [...people.keys()].filter(test).length;
-    const parts = [
+    /** @type {[number, (n: number) => string][]} */
+    const counted = [
       [
         count(then, (person) => !now.has(person)),
         (n) => ngettext("{n} person is not there now", "{n} people are not there now", n),
@@ -160,37 +192,47 @@ export class FrameHistory {
         count(then, (person) => now.has(person) && !same(now.get(person), then.get(person))),
         (n) => ngettext("{n} person was different", "{n} people were different", n),
       ],
-    ].filter(([n]) => n > 0);
+    ];
+    const parts = counted.filter(([n]) => n > 0);
     setText(
       this._words,
       parts.length ? parts.map(([n, words]) => words(n)).join("; ") : gettext("Everybody stands where they stand now."),
     );
   }
 
+  /** @param {import("../../views/pane.js").Pane} pane */
   _ghosts(pane) {
-    if (!this._shown) return [];
+    const { transform } = pane;
+    if (!this._shown || !transform) return [];
     const now = this.store.people();
     return [...this._shown.people.values()]
       .filter((one) => !same(one, now.get(one.person)) && pane.view.box(one))
       .map((one) => ({
-        ...pane.view.item(one, LOOKS.ghost, pane.transform, this.panes.options),
+        ...pane.view.item(one, LOOKS.ghost, transform, this.panes.options),
         id: `was ${one.person}`,
       }));
   }
 
-  /** The list is a field, so its keys are its own; Escape goes back to annotating. */
+  /**
+   * The list is a field, so its keys are its own; Escape goes back to annotating.
+   * @param {KeyboardEvent} event
+   */
   _onKey(event) {
     if (event.key === "Escape") this.close();
-    else if (event.key === "Enter" && event.target.matches("input")) this.restore();
+    else if (event.key === "Enter" && event.target instanceof HTMLInputElement) this.restore();
     else return;
     event.preventDefault();
     event.stopPropagation();
   }
 }
 
-/** Today the time is enough. */
+/**
+ * Today the time is enough.
+ * @param {Date} at
+ */
 function timeWords(at) {
   const today = at.toDateString() === new Date().toDateString();
+  /** @type {Intl.DateTimeFormatOptions} */
   const time = { hour: "2-digit", minute: "2-digit", second: "2-digit" };
   return today ? at.toLocaleTimeString([], time) : at.toLocaleString([], { day: "numeric", month: "short", ...time });
 }

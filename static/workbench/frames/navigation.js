@@ -11,20 +11,42 @@ import { nearestSide, withFreeNumbers } from "../../truth/sources.js";
 const AT_ONCE = 96; // light pictures kept at hand: a batch of ten frames with up to nine views
 const PLAYING = 8; // frames fetched ahead of a running film
 
+/** @typedef {import("../../truth/annotation.js").Annotation} Annotation */
+
 /**
  * Going through the frames. Leaving a frame forwards says it is done; a frame nobody has been to starts with
  * the people of the frames beside it, moved on the way they walked, yellow.
  */
 export class Navigation {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/scene.js").Scene} parts.scene
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../truth/history.js").History} parts.history
+   * @param {import("../../saving/saver.js").Saver} parts.saver
+   * @param {import("../../views/images.js").Images} parts.images
+   * @param {import("../../saving/loader.js").Loader} parts.loader
+   * @param {import("../../base/notices.js").Notices} parts.notices
+   * @param {() => Promise<unknown>} parts.finish
+   */
   constructor({ scene, store, history, saver, images, loader, notices, finish }) {
-    Object.assign(this, { scene, store, history, saver, images, loader, notices });
+    this.scene = scene;
+    this.store = store;
+    this.history = history;
+    this.saver = saver;
+    this.images = images;
+    this.loader = loader;
+    this.notices = notices;
     this._finish = finish;
     this._busy = false;
+    /** @type {number|null} */
     this._looking = null; // the frame one scrubs to, while it is loaded
+    /** @type {number|null} */
     this._held = null; // who was selected before a frame without that person
     this._ahead = 0;
     this._around = 0;
-    this._brought = new Map(); // frame → people carried into it on this visit
+    /** @type {Map<number, Set<number>>} frame → people carried into it on this visit */
+    this._brought = new Map();
     store.on("frame", () => this._prefetch());
     this._prefetch();
   }
@@ -56,6 +78,7 @@ export class Navigation {
     });
   }
 
+  /** @param {number} number */
   jump(number) {
     return this._alone(() => this.open(number));
   }
@@ -63,6 +86,7 @@ export class Navigation {
   /**
    * Only look: nobody is carried over, nothing is said to be done. The newest wish wins.
    * @returns {Promise<boolean>} false: said that the frame could not be loaded
+   * @param {number} number
    */
   async look(number) {
     this._looking = number;
@@ -76,13 +100,19 @@ export class Navigation {
     return true;
   }
 
-  /** While playing, more of what comes is fetched. */
+  /**
+   * While playing, more of what comes is fetched.
+   * @param {boolean} on
+   */
   lookAhead(on) {
     this._ahead = on ? PLAYING : 0;
     this._prefetch();
   }
 
-  /** Frames on both sides that somebody wants to see. */
+  /**
+   * Frames on both sides that somebody wants to see.
+   * @param {number} reach
+   */
   lookAround(reach) {
     this._around = reach;
     this._prefetch();
@@ -102,6 +132,7 @@ export class Navigation {
   /**
    * People for a frame of a batch that nobody has worked in yet: on the line between two keyframes, or moved on
    * from the nearer side. Guesses of an earlier visit are made anew: more may be known by now.
+   * @param {number} number
    */
   carryInto(number) {
     const { store, scene } = this;
@@ -120,7 +151,10 @@ export class Navigation {
     if (brought.length) this.history.run(commands.bring(store, number, brought));
   }
 
-  /** Whether nobody in a frame was looked at yet. Empty and saved, or emptied: somebody has been there. */
+  /**
+   * Whether nobody in a frame was looked at yet. Empty and saved, or emptied: somebody has been there.
+   * @param {number} number
+   */
   _isFresh(number) {
     const { people, nobody, done } = this.store.frame(number);
     if (!this.judging || nobody || done) return false;
@@ -128,15 +162,22 @@ export class Navigation {
     return [...people.values()].every(isGuess);
   }
 
-  /** Who was brought before and is not here any more was removed; who would stand where he stands is no news. */
+  /**
+   * Who was brought before and is not here any more was removed; who would stand where he stands is no news.
+   * @param {number} number @param {Annotation} one
+   */
   _isNews(number, one) {
     const here = this.store.people(number);
     if (here.has(one.person)) return !same(here.get(one.person), one);
-    if (this._brought.has(number)) return !this._brought.get(number).has(one.person);
+    const brought = this._brought.get(number);
+    if (brought) return !brought.has(one.person);
     return [...here.values()].every(isFilled); // filled in from elsewhere: the others were never brought
   }
 
-  /** Show a frame; whoever calls it has asked what has to be asked. */
+  /**
+   * Show a frame; whoever calls it has asked what has to be asked.
+   * @param {number} number
+   */
   async open(number) {
     await this.loader.load(number, false);
     this._looking = null;
@@ -145,6 +186,7 @@ export class Navigation {
     this._selectAgain();
   }
 
+  /** @param {number} number */
   _show(number) {
     this._held = this.store.selection ?? this._held;
     this.store.open(number);
@@ -179,6 +221,7 @@ export class Navigation {
     return true;
   }
 
+  /** @param {Annotation[]} waiting */
   async _askAboutCarried(waiting) {
     const answer = await ask({
       title: ngettext("{n} person is still yellow", "{n} people are still yellow", waiting.length),
@@ -213,12 +256,16 @@ export class Navigation {
     const [ahead, behind] = whole
       ? [numbers.length, numbers.length]
       : [Math.max(2, this._ahead, this._around), Math.max(1, this._around)];
+    /** @param {number} one */
     const distance = (one) => (one < index ? index - one + 0.5 : one - index);
     const near = numbers.map((_, one) => one).filter((one) => one >= index - behind && one <= index + ahead);
     this.images.want(near.sort((one, other) => distance(one) - distance(other)).map((one) => numbers[one]));
   }
 
-  /** A question that is open, or a frame that is loading, is not asked or loaded twice. */
+  /**
+   * A question that is open, or a frame that is loading, is not asked or loaded twice.
+   * @param {() => Promise<unknown>} work
+   */
   async _alone(work) {
     if (this._busy) return;
     this._busy = true;
@@ -231,6 +278,7 @@ export class Navigation {
     }
   }
 
+  /** @param {unknown} error */
   _sayNotLoaded(error) {
     this.notices.say(
       gettext("The frame could not be loaded: {reason}. Please try again", { reason: failureWords(error) }),

@@ -1,14 +1,33 @@
 import { Emitter } from "../../base/emitter.js";
 
-/** Plays through the frames, only looking. Never skips a frame: it waits for pictures. Emits `change`. */
+/**
+ * Plays through the frames, only looking. Never skips a frame: it waits for pictures. Emits `change`.
+ * @extends {Emitter<{change: void}>}
+ */
 export class Playback extends Emitter {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/scene.js").Scene} parts.scene
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../views/images.js").Images} parts.images
+   * @param {import("./navigation.js").Navigation} parts.navigation
+   * @param {import("../settings.js").Settings} parts.settings
+   */
   constructor({ scene, store, images, navigation, settings }) {
     super();
-    Object.assign(this, { scene, store, images, navigation, settings });
+    this.scene = scene;
+    this.store = store;
+    this.images = images;
+    this.navigation = navigation;
+    this.settings = settings;
+    /** @type {number|null} */
     this._request = null;
     this._due = 0;
     // Whoever clicks or edits wants to work on what is shown now.
-    this._onPointer = (event) => event.target.closest("[data-action=play]") || this.stop();
+    /** @param {PointerEvent} event */
+    this._onPointer = ({ target }) => {
+      if (!(target instanceof Element && target.closest("[data-action=play]"))) this.stop();
+    };
     store.on("change", ({ source }) => source === "edit" && this.stop());
   }
 
@@ -35,7 +54,7 @@ export class Playback extends Emitter {
 
   /** Where it stops one can work: the frame is opened as if one had gone there. */
   stop() {
-    if (!this.playing) return;
+    if (this._request === null) return;
     cancelAnimationFrame(this._request);
     this._request = null;
     document.removeEventListener("pointerdown", this._onPointer, { capture: true });
@@ -52,6 +71,7 @@ export class Playback extends Emitter {
     this._request = requestAnimationFrame((now) => this._tick(now));
   }
 
+  /** @param {number} now ms */
   _tick(now) {
     const next = this.store.neighbour(1);
     if (next === undefined) return this.stop();
@@ -63,12 +83,18 @@ export class Playback extends Emitter {
     this._ask();
   }
 
-  /** A frame that cannot be loaded ends the film where it is. */
+  /**
+   * A frame that cannot be loaded ends the film where it is.
+   * @param {number} number
+   */
   async _show(number) {
     if (!(await this.navigation.look(number))) this.stop();
   }
 
-  /** A picture that failed for good does not hold up the others. */
+  /**
+   * A picture that failed for good does not hold up the others.
+   * @param {number} number
+   */
   _ready(number) {
     return this.scene.cameras.every(({ index }) => {
       const { bitmap, status } = this.images.get(number, index, "light");

@@ -9,17 +9,52 @@ import { sourcesOn, withFreeNumbers } from "../../truth/sources.js";
 import { nextTask } from "../../truth/todo.js";
 import { keyFor } from "../keys/keys.js";
 
+/**
+ * @typedef {import("../../truth/annotation.js").Annotation} Annotation
+ * @typedef {import("../../truth/sources.js").FrameSource} Source
+ * @typedef {-1|1} Direction to the frame before, or after
+ * @typedef {import("../settings.js").WhosePaths} WhosePaths
+ */
+
+/** @type {WhosePaths[]} */
 const PATHS = ["none", "selected", "all"];
 
 /** What an annotator does across frames: carry, copy, fill, look through, find what is left. */
 export class TimeActions {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/scene.js").Scene} parts.scene
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../truth/history.js").History} parts.history
+   * @param {import("../../saving/loader.js").Loader} parts.loader
+   * @param {import("../settings.js").Settings} parts.settings
+   * @param {import("../../views/panes.js").Panes} parts.panes
+   * @param {import("../../base/notices.js").Notices} parts.notices
+   * @param {import("../placing/guard.js").Guard} parts.guard
+   * @param {import("./navigation.js").Navigation} parts.navigation
+   * @param {import("./playback.js").Playback} parts.playback
+   */
   constructor({ scene, store, history, loader, settings, panes, notices, guard, navigation, playback }) {
-    Object.assign(this, { scene, store, history, loader, settings, panes, notices, guard, navigation, playback });
+    this.scene = scene;
+    this.store = store;
+    this.history = history;
+    this.loader = loader;
+    this.settings = settings;
+    this.panes = panes;
+    this.notices = notices;
+    this.guard = guard;
+    this.navigation = navigation;
+    this.playback = playback;
+    /** @type {() => Promise<typeof import("./fill_dialog.js")|null>} */
     this._dialog = fetchedDialog(notices, import.meta.resolve("./fill_dialog.js"));
+    /** @type {Set<number>} */
     this._asked = new Set(); // people in one frame only, shown once
   }
 
-  /** Rows for the table of actions, by the ids of the key table. */
+  /**
+   * Rows for the table of actions, by the ids of the key table.
+   * @returns {import("../actions.js").ActionTable}
+   */
   table() {
     return {
       bring: () => this.bring(-1),
@@ -37,7 +72,10 @@ export class TimeActions {
     };
   }
 
-  /** Everybody of the frame beside this one who is missing here, moved on the way he walked. */
+  /**
+   * Everybody of the frame beside this one who is missing here, moved on the way he walked.
+   * @param {Direction} direction
+   */
   async bring(direction) {
     if (this.guard.refused()) return;
     const sources = await this._sources(direction);
@@ -54,16 +92,20 @@ export class TimeActions {
     this.notices.say(ngettext("{n} person loaded", "{n} people loaded", missing.length));
   }
 
-  /** One person exactly where he stands in the frame beside this one: the selected one, or whom one chooses. */
+  /**
+   * One person exactly where he stands in the frame beside this one: the selected one, or whom one chooses.
+   * @param {Direction} direction
+   */
   async copy(direction) {
     if (this.guard.refused()) return;
     const sources = await this._sources(direction);
     if (!sources?.length) return sources && this._sayNobody(direction);
     const [source] = sources;
     const person = this._whomToCopy(source) ?? (await this._choose(source));
-    if (person === null) return;
     if (person === "all") return this._copyAll(source);
-    const after = this._copied(source, source.people.get(person));
+    const there = person === null ? undefined : source.people.get(person);
+    if (person === null || !there) return;
+    const after = this._copied(there);
     const stranger = source.outside && !this.store.person(person); // whose number may mean somebody else here
     this.history.run(commands.copy(this.store, stranger ? withFreeNumbers(this.store, [after])[0] : after));
   }
@@ -86,6 +128,7 @@ export class TimeActions {
     this.notices.say(ngettext("{n} box filled in", "{n} boxes filled in", edits.length));
   }
 
+  /** @param {number} offset */
   look(offset) {
     const number = this.store.neighbour(offset);
     if (number !== undefined) return this.navigation.look(number);
@@ -100,7 +143,7 @@ export class TimeActions {
     if (task.number !== this.store.current) return; // it could not be loaded
     if (task.person !== null) this.store.select(task.person);
     if (task.kind === "single") {
-      this._asked.add(task.person);
+      if (task.person !== null) this._asked.add(task.person);
       this.notices.say(
         gettext("Person {person} is in this frame only – {key} fills in the other frames", {
           person: task.person,
@@ -112,6 +155,7 @@ export class TimeActions {
       this.notices.say(gettext("Everybody is validated – {key} says the frame is done", { key: keyFor("nextFrame") }));
   }
 
+  /** @param {"pathsInViews"|"pathsOnMap"} name */
   cyclePaths(name) {
     const next = PATHS[(PATHS.indexOf(this.settings.get(name)) + 1) % PATHS.length];
     this.settings.set(name, next);
@@ -124,18 +168,23 @@ export class TimeActions {
     );
   }
 
-  /** Null when they could not be loaded. */
+  /**
+   * Null when they could not be loaded.
+   * @param {Direction} direction
+   */
   async _sources(direction) {
     const number = this.store.neighbour(direction);
     if (number !== undefined && !(await loadMissing(this, [number]))) return null;
     return sourcesOn(this.store, this.scene, this.store.current, direction);
   }
 
+  /** @param {Source} source */
   _whomToCopy({ people }) {
     const person = this.store.selection ?? this.navigation.held;
-    return people.has(person) ? person : null;
+    return person !== null && people.has(person) ? person : null;
   }
 
+  /** @param {Source} source @returns {Promise<number|"all"|null>} */
   async _choose({ number, people }) {
     const missing = [...people.keys()].filter((person) => !this.store.person(person));
     if (!missing.length) {
@@ -153,23 +202,26 @@ export class TimeActions {
     return answer === null || answer === "all" ? answer : Number(answer);
   }
 
+  /** @param {Source} source */
   _copyAll(source) {
     const { store } = this;
     const missing = [...source.people.values()].filter(({ person }) => !store.person(person));
     const taken = new Set([...store.people().values()].map(({ position }) => position));
     const copies = missing.map((one) => {
-      const after = this._copied(source, one, taken);
+      const after = this._copied(one, taken);
       taken.add(after.position);
       return after;
     });
     this.history.run(commands.bring(store, store.current, source.outside ? withFreeNumbers(store, copies) : copies));
   }
 
-  _copied(source, one, taken = this._takenBeside(one.person)) {
+  /** @param {Annotation} one @param {Set<number>} [taken] @returns {Annotation} */
+  _copied(one, taken = this._takenBeside(one.person)) {
     const position = freePosition(this.scene.grid, this.scene.metres(one.position), taken);
     return changed(one, { position, state: CARRIED, origin: "copied" });
   }
 
+  /** @param {number} except */
   _takenBeside(except) {
     const others = [...this.store.people().values()].filter(({ person }) => person !== except);
     return new Set(others.map(({ position }) => position));
@@ -182,11 +234,13 @@ export class TimeActions {
     return numbers.slice(loaded.indexOf(true), loaded.lastIndexOf(true) + 1);
   }
 
+  /** @param {number} number */
   _placeOf(number) {
     const index = this.store.numbers.indexOf(number);
     return index < 0 ? number : index + 1;
   }
 
+  /** @param {Direction} direction */
   _sayNobody(direction) {
     this.notices.say(
       direction < 0 ? gettext("Nobody is marked before this frame") : gettext("Nobody is marked after this frame"),

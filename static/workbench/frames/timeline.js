@@ -5,16 +5,38 @@ import { carriedOf } from "../../truth/annotation.js";
 import { titleFor } from "../keys/keys.js";
 
 /**
+ * @typedef {import("../actions.js").Perform} Perform
+ * @typedef {{node: HTMLElement, mark: HTMLElement, signature: string}} Cell
+ */
+
+/**
  * All frames in a line: what state each is in, play, and a scrubber to look through them. A frame's mark says it
  * by shape: ✓ done, a dashed ring yellow left, a dot worked on, nothing where nobody is yet; • not saved yet.
  */
 export class Timeline {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../saving/saver.js").Saver} parts.saver
+   * @param {import("./navigation.js").Navigation} parts.navigation
+   * @param {import("./playback.js").Playback} parts.playback
+   * @param {Perform} parts.perform
+   */
   constructor({ store, saver, navigation, playback, perform }) {
-    Object.assign(this, { store, saver, navigation, playback });
+    this.store = store;
+    this.saver = saver;
+    this.navigation = navigation;
+    this.playback = playback;
+    /** @type {Map<number, Cell>} */
     this._cells = new Map();
+    /** @type {Set<number>} */
     this._changed = new Set();
+    /** @type {Set<number>} */
     this._unsaved = new Set();
+    /** @type {number|null} */
     this._scrubbing = null; // the frame under the pointer
+    this._play = this._button("play", "▶", perform);
+    this._frames = this._line();
     this.element = this._build(perform);
     store.on("change", ({ frames }) => this._later(frames));
     store.on("frame", ({ before, after }) => this._later([before, after]));
@@ -24,21 +46,9 @@ export class Timeline {
     this.paint();
   }
 
+  /** @param {Perform} perform */
   _build(perform) {
-    this._play = this._button("play", "▶", perform);
     this._play.setAttribute("aria-label", gettext("Play"));
-    this._frames = element(
-      "div",
-      {
-        className: "timeline-frames",
-        role: "slider",
-        tabIndex: 0,
-        "aria-label": gettext("Frames"),
-        "aria-valuemin": "1",
-        "aria-valuemax": String(this.store.numbers.length),
-      },
-      this.store.numbers.map((number, index) => this._cell(number, index)),
-    );
     this._attach();
     return element(
       "section",
@@ -50,10 +60,27 @@ export class Timeline {
     );
   }
 
+  _line() {
+    return element(
+      "div",
+      {
+        className: "timeline-frames",
+        role: "slider",
+        tabIndex: 0,
+        "aria-label": gettext("Frames"),
+        "aria-valuemin": "1",
+        "aria-valuemax": String(this.store.numbers.length),
+      },
+      this.store.numbers.map((number, index) => this._cell(number, index)),
+    );
+  }
+
+  /** @param {string} id @param {string} text @param {Perform} perform */
   _button(id, text, perform) {
-    const onclick = (event) => {
+    /** @param {MouseEvent} event */
+    const onclick = ({ detail, currentTarget }) => {
       perform(id);
-      if (event.detail > 0) event.currentTarget.blur(); // else Space would press it again
+      if (detail > 0 && currentTarget instanceof HTMLElement) currentTarget.blur(); // else Space would press it again
     };
     return element(
       "button",
@@ -62,6 +89,7 @@ export class Timeline {
     );
   }
 
+  /** @param {number} number @param {number} index */
   _cell(number, index) {
     const mark = element("span", { className: "mark" });
     const node = element(
@@ -88,7 +116,10 @@ export class Timeline {
     frames.addEventListener("keydown", (event) => this._onKey(event));
   }
 
-  /** While the pointer is down one only looks; where it is let go the frame is opened to work on. */
+  /**
+   * While the pointer is down one only looks; where it is let go the frame is opened to work on.
+   * @param {PointerEvent} event
+   */
   _scrub(event) {
     const { left, width } = this._frames.getBoundingClientRect();
     const { numbers } = this.store;
@@ -105,10 +136,14 @@ export class Timeline {
     this._scrubbing = null;
   }
 
-  /** As a slider with the keyboard's focus on it. */
+  /**
+   * As a slider with the keyboard's focus on it.
+   * @param {KeyboardEvent} event
+   */
   _onKey(event) {
     const { numbers } = this.store;
     const index = numbers.indexOf(this.store.current);
+    /** @type {Record<string, number>} */
     const wanted = {
       ArrowLeft: index - 1,
       ArrowDown: index - 1,
@@ -123,7 +158,10 @@ export class Timeline {
     if (number !== undefined) this.navigation.jump(number);
   }
 
-  /** Of a long layer only the cells of changed frames are looked at: this runs for every step of a held key. */
+  /**
+   * Of a long layer only the cells of changed frames are looked at: this runs for every step of a held key.
+   * @param {Iterable<number>} [frames]
+   */
   _later(frames = []) {
     for (const number of frames) this._changed.add(number);
     paintSoon(this);
@@ -142,18 +180,20 @@ export class Timeline {
     this._frames.setAttribute("aria-valuetext", this._words(store.current, unsaved.has(store.current)));
   }
 
+  /** @param {Cell|undefined} cell @param {number} number @param {boolean} unsaved */
   _refresh(cell, number, unsaved) {
     const { state } = frameState(this.store.frame(number));
     const current = number === this.store.current;
     const words = this._words(number, unsaved);
     const signature = `${words} ${current}`;
-    if (signature === cell.signature) return;
+    if (!cell || signature === cell.signature) return;
     cell.signature = signature;
     Object.assign(cell.node.dataset, { state, unsaved, current });
     cell.node.title = words;
     setText(cell.mark, state === "done" ? "✓" : "");
   }
 
+  /** @param {number} number @param {boolean} unsaved */
   _words(number, unsaved) {
     const { state, people, yellow } = frameState(this.store.frame(number));
     const words = {
@@ -172,7 +212,7 @@ export class Timeline {
   }
 }
 
-/** Pure. @returns {{state: "done"|"yellow"|"open"|"empty"|"unknown", people: number, yellow: number}} */
+/** Pure. @param {import("../../truth/store.js").Frame} frame @returns {{state: "done"|"yellow"|"open"|"empty"|"unknown", people: number, yellow: number}} */
 export function frameState({ people, done, loaded }) {
   const yellow = carriedOf(people).length;
   const state = !loaded ? "unknown" : yellow ? "yellow" : done ? "done" : people.size ? "open" : "empty";

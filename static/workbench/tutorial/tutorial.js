@@ -11,28 +11,24 @@ const SETTLED = 600; // ms without an edit before the server is asked
  * start over; nothing is saved here but that a step was done.
  */
 export class Tutorial {
+  /**
+   * @param {object} parts
+   * @param {import("../../base/api.js").Api} parts.api
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../views/panes.js").Panes} parts.panes
+   * @param {import("../frames/navigation.js").Navigation} parts.navigation
+   * @param {string} parts.home
+   */
   constructor({ api, store, panes, navigation, home }) {
-    Object.assign(this, { _api: api, _store: store, _navigation: navigation, _home: home });
+    this._api = api;
+    this._store = store;
+    this._navigation = navigation;
+    this._home = home;
     this._spotlight = new Spotlight(panes);
     this._index = 0;
-    this._timer = null;
+    /** @type {ReturnType<typeof setTimeout>|undefined} */
+    this._timer = undefined;
     this._asked = 0;
-    this._build();
-    store.on("change", ({ source }) => source === "edit" && this._soon());
-    store.on("frame", () => this._soon());
-  }
-
-  /** Asked for anew each time: the keys named in them can be changed. */
-  get _steps() {
-    return tutorialSteps();
-  }
-
-  /** Once the page is there. */
-  start() {
-    this._show();
-  }
-
-  _build() {
     this._progress = element("p", { className: "tutorial-progress" });
     this._title = element("h2", { tabIndex: -1 });
     this._text = element("p", {});
@@ -55,7 +51,23 @@ export class Tutorial {
     );
     this._check = element("button", { type: "button", onclick: () => this._ask(true) }, gettext("Check"));
     this._go = element("button", { type: "button", className: "main", hidden: true, onclick: () => this._advance() });
-    this.element = element(
+    this.element = this._build();
+    store.on("change", ({ source }) => source === "edit" && this._soon());
+    store.on("frame", () => this._soon());
+  }
+
+  /** Asked for anew each time: the keys named in them can be changed. */
+  get _steps() {
+    return tutorialSteps();
+  }
+
+  /** Once the page is there. */
+  start() {
+    this._show();
+  }
+
+  _build() {
+    return element(
       "section",
       { className: "tutorial", "aria-label": gettext("Tutorial"), onkeydown: keepForButtons },
       element("div", { className: "tutorial-head" }, this._progress, this._back, this._again),
@@ -90,7 +102,10 @@ export class Tutorial {
     this._timer = setTimeout(() => this._ask(true), SETTLED);
   }
 
-  /** `loud`: something was done, so say what is still wrong; otherwise only praise. */
+  /**
+   * `loud`: something was done, so say what is still wrong; otherwise only praise.
+   * @param {boolean} loud
+   */
   async _ask(loud) {
     const { id } = this._steps[this._index];
     const asked = ++this._asked;
@@ -106,6 +121,7 @@ export class Tutorial {
     }
   }
 
+  /** @param {string} message */
   _praise(message) {
     const last = this._index === this._steps.length - 1;
     setText(this._verdict, `✓ ${message}`);
@@ -143,18 +159,25 @@ export class Tutorial {
     await this._goTo(index);
   }
 
-  /** It may have been done already. */
+  /**
+   * It may have been done already.
+   * @param {number} index
+   */
   _goTo(index) {
     clearTimeout(this._timer);
     this._asked += 1;
     this._index = index;
     this._show();
-    document.activeElement?.blur();
+    if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
     return this._ask(false);
   }
 }
 
-/** Enter and Space on a button of the tutorial press it, instead of going to people. */
+/**
+ * Enter and Space on a button of the tutorial press it, instead of going to people.
+ * @param {KeyboardEvent} event
+ */
 function keepForButtons(event) {
-  if (event.target.closest("button") && ["Enter", " "].includes(event.key)) event.stopPropagation();
+  if (event.target instanceof Element && event.target.closest("button") && ["Enter", " "].includes(event.key))
+    event.stopPropagation();
 }

@@ -3,11 +3,16 @@
 import { gettext } from "../../base/messages.js";
 import { keyFor } from "../keys/keys.js";
 
+/** @typedef {import("../../truth/annotation.js").Annotation} Annotation */
+
+/** @param {Annotation} one */
 const isYellow = ({ state }) => state === "carried";
 
 /**
- * @returns {{id, frame: number, title, text, hint, light: object}[]} `frame`: counted from 0; `light`: what the
- *   spotlight is on
+ * @typedef {{parts?: string, people?: (one: Annotation) => boolean}} Light
+ * @typedef {{id: string, frame: number, title: string, text: string, hint: string, light: Light}} Step `frame`: counted
+ *   from 0; `light`: what the spotlight is on
+ * @returns {Step[]}
  */
 export function tutorialSteps() {
   return [
