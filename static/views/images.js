@@ -19,7 +19,7 @@ const [OPEN, CLOSE_UP, WANTED, SHARP, REST] = [4, 3, 2, 1, 0]; // how important 
  * @property {number} frame
  * @property {number} camera
  * @property {PictureSize} size
- * @property {string|undefined} address undefined: there is none
+ * @property {string} address empty: there is none
  * @property {"waiting"|"loading"|"ready"|"error"} status
  * @property {ImageBitmap|null} bitmap
  * @property {string} error why it is not there
@@ -83,7 +83,7 @@ export class Images extends Emitter {
       known.used = performance.now();
       return known;
     }
-    const address = this._addresses.get(frame)?.get(camera)?.[size];
+    const address = this._addresses.get(frame)?.get(camera)?.[size] ?? "";
     /** @type {Picture} */
     const picture = {
       key,
@@ -142,7 +142,7 @@ export class Images extends Emitter {
     for (const frame of frames) {
       for (const camera of this._addresses.get(frame)?.keys() ?? []) this.get(frame, camera, "light");
     }
-    this._queue.sort((one, other) => this._rank(one) - this._rank(other));
+    this._queue.sort((one, other) => this._place(one) - this._place(other));
     this._pump();
   }
 
@@ -152,7 +152,7 @@ export class Images extends Emitter {
    */
   retry(frame, camera) {
     for (const picture of this._pictures.values()) {
-      if (picture.frame === frame && picture.camera === camera && picture.status === "error") {
+      if (picture.frame === frame && picture.camera === camera && isFailed(picture)) {
         picture.tries = 0;
         this._enqueue(picture);
         this._tell(picture);
@@ -162,7 +162,7 @@ export class Images extends Emitter {
 
   retryAll() {
     for (const picture of this._pictures.values()) {
-      if (picture.status === "error" && this._isWanted(picture)) this.retry(picture.frame, picture.camera);
+      if (isFailed(picture) && this._isWanted(picture)) this.retry(picture.frame, picture.camera);
     }
   }
 
@@ -212,7 +212,7 @@ export class Images extends Emitter {
   /** @param {Picture} picture @param {unknown} error */
   _failed(picture, error) {
     this._shelf.free(picture);
-    if (error.name === "AbortError") return this._forget(picture);
+    if (error instanceof Error && error.name === "AbortError") return this._forget(picture);
     Object.assign(picture, { status: "error", error: problemWords(error) });
     const permanent = error instanceof ApiError && error.status < 500;
     const pause = RETRIES[picture.tries];
@@ -243,6 +243,11 @@ export class Images extends Emitter {
     return this._ranks.has(frame);
   }
 
+  /** How many frames are wanted more. @param {Picture} picture */
+  _place({ frame }) {
+    return this._ranks.get(frame) ?? Infinity;
+  }
+
   /** @param {Picture} picture */
   _expectedBytes({ size, camera }) {
     return size === "full" ? (this._fullBytes[camera] ?? 0) : this._lightBytes;
@@ -258,4 +263,9 @@ export class Images extends Emitter {
     if (size === "full") return rank === 0 && this._closeUp.get(camera) === frame ? CLOSE_UP : SHARP;
     return rank === 0 ? OPEN : WANTED + 1 / (1 + rank); // nearer frames count more
   }
+}
+
+/** Whether it did not arrive; one without an address cannot be asked for. @param {Picture} picture */
+function isFailed({ status, address }) {
+  return status === "error" && address !== "";
 }

@@ -42,6 +42,7 @@ export class MapView {
     const { grid } = scene;
     this.id = "map";
     this.byTable = false;
+    /** @type {number|null} */
     this.index = null;
     this.title = title;
     this.largest = 400; // CSS pixels per metre
