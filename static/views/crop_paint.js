@@ -1,12 +1,22 @@
-/** One person cut out of one picture, with the box around. */
+/**
+ * One person cut out of one picture, with the box around.
+ * @typedef {import("./pane.js").Person} Person
+ * @typedef {object} Cell where to, CSS pixels, and of which camera
+ * @property {number} x
+ * @property {number} y
+ * @property {number} width
+ * @property {number} height
+ * @property {number} view
+ * @property {ImageBitmap|null} picture
+ */
 import { cropAround } from "./crops.js";
 import { LOOKS, lookOf } from "./styles.js";
 
 const MISSING = LOOKS.ghost; // where a person would be looked for
 
 /**
- * @param {{x, y, width, height, view: number, picture: ImageBitmap|null}} cell where to, CSS pixels, and of which camera
- * @param {object|null} one whom @param {boolean} here whether that is where they were annotated
+ * @param {CanvasRenderingContext2D} ctx @param {import("../truth/scene.js").Scene} scene @param {Cell} cell
+ * @param {Person|null|undefined} one whom @param {boolean} here whether that is where they were annotated
  */
 export function paintCrop(ctx, scene, cell, one, here) {
   const { x, y, width, height, view, picture } = cell;

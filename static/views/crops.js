@@ -1,7 +1,17 @@
-/** What part of which pictures shows a person. Pure. */
+/**
+ * What part of which pictures shows a person. Pure.
+ * @typedef {import("./pane.js").Placed} Placed
+ * @typedef {import("./regions.js").Rectangle} Rectangle
+ * @typedef {import("./regions.js").Size} Size
+ */
 const AIR = 1.35; // height of a crop, in heights of the person
 
-/** The views that show somebody best over several places: tall in the picture and not cut off at its border. */
+/**
+ * The views that show somebody best over several places: tall in the picture and not cut off at its border.
+ * @param {{cameras: Size[], rectangles: (placed: Placed) => (Rectangle|null)[]}} scene @param {Placed[]} annotations
+ * @param {number} count of views, at most
+ * @returns {number[]} their indices
+ */
 export function bestViews(scene, annotations, count) {
   const scores = scene.cameras.map((camera, index) => {
     const score = annotations.reduce((sum, one) => sum + shownHeight(camera, scene.rectangles(one)[index]), 0);
@@ -15,7 +25,10 @@ export function bestViews(scene, annotations, count) {
     .sort((one, other) => one - other);
 }
 
-/** Pixels of the picture around a box, {x, y, width, height}, as wide as `aspect` asks for. */
+/**
+ * Pixels of the picture around a box, as wide as `aspect` asks for.
+ * @param {Rectangle} box @param {number} aspect
+ */
 export function cropAround(box, aspect) {
   const height = (box.ymax - box.ymin) * AIR;
   const width = height * aspect;
@@ -27,7 +40,10 @@ export function cropAround(box, aspect) {
   };
 }
 
-/** Height of a box times the share of it that lies in the picture. */
+/**
+ * Height of a box times the share of it that lies in the picture.
+ * @param {Size} camera @param {Rectangle|null} box
+ */
 function shownHeight({ width, height }, box) {
   if (!box) return 0;
   const across = Math.min(box.xmax, width) - Math.max(box.xmin, 0);

@@ -1,4 +1,9 @@
-/** Items drawn over the people while placing and moving: readouts, crosses, lines along the ground. CSS pixels. */
+/**
+ * Items drawn over the people while placing and moving: readouts, crosses, lines along the ground. CSS pixels.
+ * @typedef {import("./regions.js").Item} Item
+ * @typedef {import("./regions.js").Size} Size
+ * @typedef {import("./regions.js").XY} XY
+ */
 import { drawPath } from "./marks.js";
 import { HALO } from "./styles.js";
 
@@ -6,7 +11,10 @@ const FONT = "600 11px system-ui, 'DejaVu Sans', sans-serif";
 const LINE = 15;
 const AWAY = 16; // from the pointer: the ground under it stays in sight
 
-/** Lines of text beside a point, inside the pane. */
+/**
+ * Lines of text beside a point, inside the pane.
+ * @param {string} id @param {Size} room @param {XY} at @param {string[]} lines @param {string} colour @returns {Item}
+ */
 export function readoutItem(id, room, at, lines, colour) {
   const width = 6.6 * Math.max(...lines.map((line) => line.length)) + 12;
   const height = LINE * lines.length + 5;
@@ -29,7 +37,10 @@ export function readoutItem(id, room, at, lines, colour) {
   };
 }
 
-/** A cross where nobody can be put, or where somebody clicked. */
+/**
+ * A cross where nobody can be put, or where somebody clicked.
+ * @param {string} id @param {XY} at @param {string} colour @param {number} [size] @returns {Item}
+ */
 export function crossItem(id, { x, y }, colour, size = 6) {
   const reach = size + 3;
   return {
@@ -58,12 +69,17 @@ export function crossItem(id, { x, y }, colour, size = 6) {
   };
 }
 
-/** A thin line through points of the pane. */
+/**
+ * A thin line through points of the pane.
+ * @param {string} id @param {XY[]} points at least one @param {Size} room @param {string} colour @param {number[]} [dash]
+ * @returns {Item}
+ */
 export function lineItem(id, points, room, colour, dash = []) {
+  const [first, last] = [points[0], points[points.length - 1]];
   const [xs, ys] = [points.map(({ x }) => x), points.map(({ y }) => y)];
   return {
     id,
-    what: `${points[0].x} ${points[0].y} ${points.at(-1).x} ${points.at(-1).y}`,
+    what: `${first.x} ${first.y} ${last.x} ${last.y}`,
     look: colour,
     bounds: {
       xmin: Math.max(Math.min(...xs) - 3, 0),

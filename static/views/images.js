@@ -12,19 +12,42 @@ const [OPEN, CLOSE_UP, WANTED, SHARP, REST] = [4, 3, 2, 1, 0]; // how important 
 /**
  * Pictures by frame, camera and size ("light" fills a pane, "full" is for zooming). Fetched and decoded off the
  * main thread, current frame first, then its neighbours; what matters least is let go. Emits `picture` {frame, camera}.
+ * @typedef {"light"|"full"} PictureSize
+ * @typedef {{camera: number} & Record<PictureSize, string>} Addresses of one picture
+ * @typedef {object} Picture
+ * @property {string} key
+ * @property {number} frame
+ * @property {number} camera
+ * @property {PictureSize} size
+ * @property {string} address empty: there is none
+ * @property {"waiting"|"loading"|"ready"|"error"} status
+ * @property {ImageBitmap|null} bitmap
+ * @property {string} error why it is not there
+ * @property {number} tries
+ * @property {number} used when somebody last asked for it
+ * @property {AbortController|null} abort while it is being loaded
+ * @extends {Emitter<{picture: {frame: number, camera: number}}>}
  */
 export class Images extends Emitter {
-  /** @param {{frames: object[], cameras: {width: number, height: number}[]}} scene */
+  /**
+   * @param {Pick<import("../base/api.js").Api, "blob">} api
+   * @param {{frames: {number: number, images: Addresses[]}[], cameras: {width: number, height: number}[]}} scene
+   * @param {number} [budget] bytes
+   */
   constructor(api, { frames, cameras }, budget = BUDGET) {
     super();
     this._api = api;
     this._addresses = new Map(
       frames.map(({ number, images }) => [number, new Map(images.map((one) => [one.camera, one]))]),
     );
+    /** @type {Map<string, Picture>} */
     this._pictures = new Map();
+    /** @type {Picture[]} */
     this._queue = [];
     this._running = 0;
+    /** @type {Map<number, number>} */
     this._ranks = new Map(); // wanted frame → place, the open one first
+    /** @type {Map<number, number>} */
     this._closeUp = new Map(); // camera → frame that a pane shows in full
     this._fullBytes = cameras.map(({ width, height }) => 4 * width * height);
     this._lightBytes = 0; // of the largest one so far
@@ -35,7 +58,10 @@ export class Images extends Emitter {
     );
   }
 
-  /** What a pane shows of a frame, sharp or not. What no pane shows any more may be let go. */
+  /**
+   * What a pane shows of a frame, sharp or not. What no pane shows any more may be let go.
+   * @param {number} frame @param {number} camera @param {boolean} sharp
+   */
   show(frame, camera, sharp) {
     if (!sharp) {
       this._closeUp.delete(camera);
@@ -46,16 +72,20 @@ export class Images extends Emitter {
     return full.bitmap ? full : this.get(frame, camera, "light");
   }
 
-  /** What there is of a picture now; asks for it if nobody has. */
+  /**
+   * What there is of a picture now; asks for it if nobody has.
+   * @param {number} frame @param {number} camera @param {PictureSize} size @returns {Picture}
+   */
   get(frame, camera, size) {
     const key = `${frame} ${camera} ${size}`;
-    let picture = this._pictures.get(key);
-    if (picture) {
-      picture.used = performance.now();
-      return picture;
+    const known = this._pictures.get(key);
+    if (known) {
+      known.used = performance.now();
+      return known;
     }
-    const address = this._addresses.get(frame)?.get(camera)?.[size];
-    picture = {
+    const address = this._addresses.get(frame)?.get(camera)?.[size] ?? "";
+    /** @type {Picture} */
+    const picture = {
       key,
       frame,
       camera,
@@ -66,6 +96,7 @@ export class Images extends Emitter {
       error: "",
       tries: 0,
       used: performance.now(),
+      abort: null,
     };
     this._pictures.set(key, picture);
     if (address)
@@ -74,12 +105,19 @@ export class Images extends Emitter {
     return picture;
   }
 
-  /** What is decoded already; asks for nothing. @returns {ImageBitmap|null} */
+  /**
+   * What is decoded already; asks for nothing.
+   * @param {number} frame @param {number} camera @param {PictureSize} size
+   * @returns {ImageBitmap|null}
+   */
   peek(frame, camera, size) {
     return this._pictures.get(`${frame} ${camera} ${size}`)?.bitmap ?? null;
   }
 
-  /** When nothing of a frame is on its way any more. */
+  /**
+   * When nothing of a frame is on its way any more.
+   * @param {number} frame @returns {Promise<void>}
+   */
   settled(frame) {
     const busy = () =>
       [...this._pictures.values()].some(
@@ -91,24 +129,30 @@ export class Images extends Emitter {
     });
   }
 
-  /** Frames in order of importance; everything else may stop loading and be let go. */
+  /**
+   * Frames in order of importance; everything else may stop loading and be let go.
+   * @param {number[]} frames
+   */
   want(frames) {
     this._ranks = new Map(frames.map((frame, index) => [frame, index]));
     this._queue = this._queue.filter((picture) => this._isWanted(picture) || this._forget(picture));
     for (const picture of this._pictures.values()) {
-      if (picture.status === "loading" && !this._isWanted(picture)) picture.abort.abort();
+      if (picture.status === "loading" && !this._isWanted(picture)) picture.abort?.abort();
     }
     for (const frame of frames) {
       for (const camera of this._addresses.get(frame)?.keys() ?? []) this.get(frame, camera, "light");
     }
-    this._queue.sort((one, other) => this._ranks.get(one.frame) - this._ranks.get(other.frame));
+    this._queue.sort((one, other) => this._place(one) - this._place(other));
     this._pump();
   }
 
-  /** Try a failed view again. */
+  /**
+   * Try a failed view again.
+   * @param {number} frame @param {number} camera
+   */
   retry(frame, camera) {
     for (const picture of this._pictures.values()) {
-      if (picture.frame === frame && picture.camera === camera && picture.status === "error") {
+      if (picture.frame === frame && picture.camera === camera && isFailed(picture)) {
         picture.tries = 0;
         this._enqueue(picture);
         this._tell(picture);
@@ -118,10 +162,11 @@ export class Images extends Emitter {
 
   retryAll() {
     for (const picture of this._pictures.values()) {
-      if (picture.status === "error" && this._isWanted(picture)) this.retry(picture.frame, picture.camera);
+      if (isFailed(picture) && this._isWanted(picture)) this.retry(picture.frame, picture.camera);
     }
   }
 
+  /** @param {Picture} picture @param {boolean} [first] */
   _enqueue(picture, first = false) {
     picture.status = "waiting";
     if (first) this._queue.unshift(picture);
@@ -133,11 +178,13 @@ export class Images extends Emitter {
   _pump() {
     while (this._running < AT_ONCE && this._queue.length) {
       const picture = this._queue.shift();
+      if (!picture) return;
       if (this._shelf.take(picture, this._expectedBytes(picture))) this._load(picture);
       else this._forget(picture);
     }
   }
 
+  /** @param {Picture} picture */
   async _load(picture) {
     this._running += 1;
     picture.status = "loading";
@@ -154,6 +201,7 @@ export class Images extends Emitter {
     }
   }
 
+  /** @param {Picture} picture @param {ImageBitmap} bitmap */
   _keep(picture, bitmap) {
     const bytes = 4 * bitmap.width * bitmap.height;
     Object.assign(picture, { bitmap, status: "ready" });
@@ -161,9 +209,10 @@ export class Images extends Emitter {
     if (!this._shelf.take(picture, bytes)) this._forget(picture);
   }
 
+  /** @param {Picture} picture @param {unknown} error */
   _failed(picture, error) {
     this._shelf.free(picture);
-    if (error.name === "AbortError") return this._forget(picture);
+    if (error instanceof Error && error.name === "AbortError") return this._forget(picture);
     Object.assign(picture, { status: "error", error: problemWords(error) });
     const permanent = error instanceof ApiError && error.status < 500;
     const pause = RETRIES[picture.tries];
@@ -175,10 +224,12 @@ export class Images extends Emitter {
     }
   }
 
+  /** @param {Picture} picture */
   _tell({ frame, camera }) {
     this.emit("picture", { frame, camera });
   }
 
+  /** @param {Picture} picture @returns {false} it is not kept */
   _forget(picture) {
     this._shelf.free(picture);
     picture.bitmap?.close();
@@ -187,19 +238,34 @@ export class Images extends Emitter {
     return false;
   }
 
+  /** @param {Picture} picture */
   _isWanted({ frame }) {
     return this._ranks.has(frame);
   }
 
+  /** How many frames are wanted more. @param {Picture} picture */
+  _place({ frame }) {
+    return this._ranks.get(frame) ?? Infinity;
+  }
+
+  /** @param {Picture} picture */
   _expectedBytes({ size, camera }) {
     return size === "full" ? (this._fullBytes[camera] ?? 0) : this._lightBytes;
   }
 
-  /** First what is open, then what is looked at close up, then frames to come, the nearest first; sharp ones that were looked at, and the rest. */
+  /**
+   * First what is open, then what is looked at close up, then frames to come, the nearest first; sharp ones that were looked at, and the rest.
+   * @param {Picture} picture
+   */
   _importance({ frame, camera, size }) {
     const rank = this._ranks.get(frame);
     if (rank === undefined) return REST;
     if (size === "full") return rank === 0 && this._closeUp.get(camera) === frame ? CLOSE_UP : SHARP;
     return rank === 0 ? OPEN : WANTED + 1 / (1 + rank); // nearer frames count more
   }
+}
+
+/** Whether it did not arrive; one without an address cannot be asked for. @param {Picture} picture */
+function isFailed({ status, address }) {
+  return status === "error" && address !== "";
 }

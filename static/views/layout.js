@@ -1,6 +1,12 @@
 /**
  * Equal panes as large as the room allows. Columns are chosen so that pictures come out largest; when the
  * last row has a cell to spare, the side panel takes it, otherwise the panel gets a column of its own.
+ * @typedef {import("./pane.js").Pane} Pane
+ * @typedef {import("./regions.js").Size} Size
+ * @typedef {"cell"|"column"|"none"} PanelPlace
+ * @typedef {{columns: number, rows: number, panel: PanelPlace} & Size} Arrangement size of one pane
+ * @typedef {{columns: number, rows: number, largeColumns: number, largeRows: number}} Around cells of the grid, and how
+ *   many of them the large one takes
  */
 import { unit } from "../base/scale.js";
 
@@ -9,13 +15,20 @@ const PANEL = 248; // units, a panel column
 const SMALL_COUNT = 2; // how much their width is worth against the large one's: they are to be read, too
 const PANEL_CELL = 300; // units, the smallest cell that can hold the panel
 
-/** Pure. @returns {{columns, rows, panel: "cell"|"column", width, height}} of one pane */
+/**
+ * Pure.
+ * @param {number} count at least one @param {Size} room @param {number} aspect @param {boolean} [panelShown]
+ * @returns {Arrangement}
+ */
 export function arrange(count, room, aspect, panelShown = true) {
+  /** @type {(Arrangement & {picture: number})|null} */
   let best = null;
+  /** @type {PanelPlace[]} */
+  const places = panelShown ? ["cell", "column"] : ["none"];
   for (let columns = 1; columns <= count; columns += 1) {
     const rows = Math.ceil(count / columns);
     const spare = columns * rows - count;
-    for (const panel of panelShown ? ["cell", "column"] : ["none"]) {
+    for (const panel of places) {
       const inner = panel === "column" ? room.width - PANEL - GAP : room.width;
       const width = (inner - (columns - 1) * GAP) / columns;
       const height = (room.height - (rows - 1) * GAP) / rows;
@@ -24,16 +37,19 @@ export function arrange(count, room, aspect, panelShown = true) {
       if (!best || picture > best.picture + 0.5) best = { columns, rows, panel, width, height, picture };
     }
   }
+  if (!best) throw new RangeError("there is no pane to arrange");
   return best;
 }
 
 /**
  * One large pane in the upper left, the others beside and below it. Pure.
- * @returns {{columns, rows, largeColumns, largeRows}} cells of the grid, and how many of them the large one takes
+ * @param {number} count at least two @param {Size} room @param {number} aspect
+ * @returns {Around}
  */
 export function arrangeAround(count, room, aspect) {
   const others = count - 1;
   const width = room.width - PANEL - GAP;
+  /** @type {(Around & {worth: number})|null} */
   let best = null;
   for (let columns = 2; columns <= count; columns += 1) {
     for (let rows = 1; rows <= count; rows += 1) {
@@ -47,16 +63,22 @@ export function arrangeAround(count, room, aspect) {
       }
     }
   }
+  if (!best) throw new RangeError("there is no pane to arrange");
   return best;
 }
 
 /** Keeps a grid of panes arranged while its room changes. */
 export class Layout {
+  /**
+   * @param {HTMLElement} container @param {import("./panes.js").AnyPanes} panes
+   * @param {HTMLElement} panel @param {number} aspect of the pictures
+   */
   constructor(container, panes, panel, aspect) {
     this._container = container;
     this._panes = panes;
     this._panel = panel;
     this._aspect = aspect;
+    /** @type {Pane|null} */
     this._large = null;
     container.append(panes.element, panel);
     this._observer = new ResizeObserver(() => this.update());
@@ -64,7 +86,7 @@ export class Layout {
     this.update();
   }
 
-  /** @param {object|null} pane the one that is large; null: all alike */
+  /** @param {Pane|null} pane the one that is large; null: all alike */
   setLarge(pane) {
     this._large = pane;
     this.update();
@@ -78,16 +100,21 @@ export class Layout {
     const [width, height] = [this._container.clientWidth / unit(), this._container.clientHeight / unit()];
     if (!width || !height) return;
     const { shown, all } = this._panes;
-    const arrangement = (this._large ? arrangeAround : arrange)(shown.length, { width, height }, this._aspect);
-    const { columns, rows, panel = "column", largeColumns = 1, largeRows = 1 } = arrangement;
+    const { columns, rows, panel, largeColumns, largeRows } = this._arrangement(shown.length, { width, height });
     const { style } = this._panes.element;
-    style.setProperty("--columns", columns);
-    style.setProperty("--rows", rows);
-    style.setProperty("--large-columns", largeColumns);
-    style.setProperty("--large-rows", largeRows);
+    style.setProperty("--columns", String(columns));
+    style.setProperty("--rows", String(rows));
+    style.setProperty("--large-columns", String(largeColumns));
+    style.setProperty("--large-rows", String(largeRows));
     for (const pane of all) pane.element.classList.toggle("large", pane === this._large);
     this._container.dataset.panel = panel;
     const parent = panel === "cell" ? this._panes.element : this._container;
     if (this._panel.parentElement !== parent) parent.append(this._panel);
+  }
+
+  /** @param {number} count @param {Size} room @returns {Around & {panel: PanelPlace}} */
+  _arrangement(count, room) {
+    if (this._large) return { ...arrangeAround(count, room, this._aspect), panel: "column" };
+    return { ...arrange(count, room, this._aspect), largeColumns: 1, largeRows: 1 };
   }
 }

@@ -20,11 +20,29 @@ const TURNED = {
 /**
  * The ground from above, in metres. A long grid lies on its side, turned and never mirrored, so that it fills
  * a wide pane: then Y runs to the right and X downwards.
+ * @typedef {import("../truth/scene.js").Scene} Scene
+ * @typedef {import("./display.js").Options} Options
+ * @typedef {import("./pane.js").Axes} Axes
+ * @typedef {import("./pane.js").Person} Person
+ * @typedef {import("./pane.js").PersonItem} PersonItem
+ * @typedef {import("./pane.js").Placed} Placed
+ * @typedef {import("./regions.js").Rectangle} Rectangle
+ * @typedef {import("./regions.js").XY} XY
+ * @typedef {import("./styles.js").Look} Look
+ * @typedef {import("./transform.js").Transform} Transform
+ * @typedef {import("./display.js").MapColours} MapColours
+ * @typedef {import("./pane.js").PictureState} PictureState
+ * @typedef {import("./pane.js").View} View
+ * @typedef {{mapColours: MapColours, footprints?: boolean}} Ground how the map is painted; `footprints`: of the cameras
+ * @implements {View}
  */
 export class MapView {
+  /** @param {Scene} scene @param {string} title */
   constructor(scene, title) {
     const { grid } = scene;
     this.id = "map";
+    this.byTable = false;
+    /** @type {number|null} */
     this.index = null;
     this.title = title;
     this.largest = 400; // CSS pixels per metre
@@ -34,9 +52,11 @@ export class MapView {
     this._turned = this._height > this._width;
     const [across, down] = this._turned ? [this._height, this._width] : [this._width, this._height];
     this.size = { width: across + 2 * BORDER, height: down + 2 * BORDER };
+    /** @type {XY[][]|null} */
     this._footprints = null;
   }
 
+  /** @param {XY} place @returns {XY} */
   ground({ x, y }) {
     const { origin } = this._scene.grid;
     const [across, down] = [x - BORDER, y - BORDER];
@@ -44,32 +64,45 @@ export class MapView {
     return { x: origin[0] + across, y: origin[1] + this._height - down };
   }
 
+  /** @param {XY} ground @returns {XY} */
   point(ground) {
     const { origin } = this._scene.grid;
     const [x, y] = [ground.x - origin[0], ground.y - origin[1]];
     return this._turned ? { x: y + BORDER, y: x + BORDER } : { x: x + BORDER, y: this._height - y + BORDER };
   }
 
+  /** @param {Placed} annotation @returns {XY} */
   foot(annotation) {
     return this.point(this._scene.metres(annotation.position));
   }
 
-  /** The cylinder's footprint, in metres of the map. */
+  /**
+   * The cylinder's footprint, in metres of the map.
+   * @param {Placed} annotation @returns {Rectangle}
+   */
   box(annotation) {
     const { x, y } = this.foot(annotation);
     const { radius } = this._scene.cylinderOf(annotation);
     return { xmin: x - radius, ymin: y - radius, xmax: x + radius, ymax: y + radius };
   }
 
-  /** The map's own directions, everywhere the same. */
+  /**
+   * The map's own directions, everywhere the same.
+   * @returns {Axes}
+   */
   axes() {
     return this._turned ? TURNED : UPRIGHT;
   }
 
+  /** @returns {PictureState} */
   picture() {
-    return { status: "ready" };
+    return { status: "ready", error: "" };
   }
 
+  /** Nothing of it is fetched. */
+  retry() {}
+
+  /** @param {CanvasRenderingContext2D} ctx @param {Transform} transform @param {number|null} frame @param {Ground} options */
   paintBackground(ctx, transform, frame, options) {
     const style = options.mapColours;
     const corner = transform.toPane(BORDER, BORDER);
@@ -82,6 +115,10 @@ export class MapView {
 
   paintGuides() {}
 
+  /**
+   * @param {Person} annotation @param {Look} look @param {Transform} transform @param {Options} options
+   * @returns {PersonItem}
+   */
   item(annotation, look, transform, options) {
     const foot = this.foot(annotation);
     const { x, y } = transform.toPane(foot.x, foot.y);
@@ -105,6 +142,10 @@ export class MapView {
     };
   }
 
+  /**
+   * @param {CanvasRenderingContext2D} ctx @param {Transform} transform
+   * @param {MapColours} style @param {number} width @param {number} height
+   */
   _paintMetres(ctx, transform, style, width, height) {
     ctx.lineWidth = 1;
     const every = transform.scale > 12 ? 1 : 5;
@@ -115,6 +156,7 @@ export class MapView {
     }
   }
 
+  /** @param {CanvasRenderingContext2D} ctx @param {Transform} transform @param {MapColours} style */
   _paintCameras(ctx, transform, style) {
     this._footprints ??= this._scene.cameras.map((camera) => footprint(camera, this._scene.grid));
     this._footprints.forEach((polygon, index) => {
@@ -125,6 +167,7 @@ export class MapView {
   }
 }
 
+/** @param {CanvasRenderingContext2D} ctx @param {Transform} transform @param {[number, number]} from @param {[number, number]} to */
 function strokeLine(ctx, transform, [x1, y1], [x2, y2]) {
   const from = transform.toPane(x1 + BORDER, y1 + BORDER);
   const to = transform.toPane(x2 + BORDER, y2 + BORDER);
@@ -134,6 +177,7 @@ function strokeLine(ctx, transform, [x1, y1], [x2, y2]) {
   ctx.stroke();
 }
 
+/** @param {CanvasRenderingContext2D} ctx @param {number} x @param {number} y @param {number} radius @param {string} colour */
 function drawRing(ctx, x, y, radius, colour) {
   ctx.beginPath();
   ctx.arc(x, y, radius, 0, 2 * Math.PI);

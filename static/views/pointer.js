@@ -8,22 +8,46 @@ const EDGE = 5; // CSS pixels around the top of the selected box that mean the t
 const LONG = 550; // ms a finger stays in one place to mean "move here"
 const TALL = 30; // CSS pixels a box must have for its top to be taken hold of
 
+/**
+ * @typedef {import("./intents.js").Part} Part
+ * @typedef {import("./pane.js").Pane} Pane
+ * @typedef {import("./pane.js").Person} Person
+ * @typedef {import("./regions.js").XY} XY
+ * @typedef {{person: Person, part: Part}} Grip
+ * @typedef {{pane: Pane, at: XY, event: MouseEvent}} Under
+ * @typedef {object} Press
+ * @property {Pane} pane
+ * @property {XY} at
+ * @property {PointerEvent} last
+ * @property {boolean} dragged
+ * @property {Grip|null} grip
+ * @property {boolean} holding somebody, not the picture
+ */
+
 /** Pointer events of the panes, as intents. Wheel and drags of the picture change a pane's pan and zoom directly. */
 export class Pointer {
-  /** @param {import("./intents.js").Intents} intents */
+  /** @param {import("./panes.js").AnyPanes} panes @param {import("./intents.js").Intents} intents */
   constructor(panes, intents) {
     this._panes = panes;
     this._intents = intents;
+    /** @type {Press|null} */
     this._press = null;
     this._fingers = new Fingers();
+    /** @type {{pane: Pane, at: XY, person: number}|null} */
     this._lastPick = null;
+    /** @type {MouseEvent|null} */
     this._over = null; // the mouse's last event over a pane
-    this._longPress = null;
+    /** @type {ReturnType<typeof setTimeout>|undefined} */
+    this._longPress = undefined;
     for (const pane of panes.all) this._attach(pane);
   }
 
-  /** People under a point, best first: foot points, then boxes from the front to the back. */
+  /**
+   * People under a point, best first: foot points, then boxes from the front to the back.
+   * @param {Pane} pane @param {XY} at @returns {Person[]}
+   */
   pick(pane, at) {
+    if (!pane.transform) return [];
     const people = [...this._panes.store.people().values()];
     const feet = people
       .map((person) => ({ person, distance: footDistance(pane, person, at) }))
@@ -33,14 +57,19 @@ export class Pointer {
     const { x, y } = pane.transform.toSource(at.x, at.y);
     const inside = people
       .filter((person) => !feet.includes(person))
-      .map((person) => ({ person, box: pane.view.box(person) }))
-      .filter(({ box }) => box && contains(box, x, y))
+      .flatMap((person) => {
+        const box = pane.view.box(person);
+        return box && contains(box, x, y) ? [{ person, box }] : [];
+      })
       .sort((one, other) => other.box.ymax - one.box.ymax)
       .map(({ person }) => person);
     return [...feet, ...inside];
   }
 
-  /** What a drag from here takes hold of: {person, part}, or null for the picture. The selected one comes first. */
+  /**
+   * What a drag from here takes hold of, or null for the picture. The selected one comes first.
+   * @param {Pane} pane @param {XY} at @returns {Grip|null}
+   */
   grip(pane, at) {
     const selected = this._panes.store.selected();
     if (selected && onTop(pane, selected, at)) return { person: selected, part: "top" };
@@ -49,14 +78,19 @@ export class Pointer {
     return person ? { person, part: "foot" } : null;
   }
 
-  /** Where the pointer is: {pane, at, event}, or null when it is over none of the views. */
+  /**
+   * Where the pointer is, or null when it is over none of the views.
+   * @returns {Under|null}
+   */
   under() {
     const event = this._over;
     const target = event && document.elementFromPoint(event.clientX, event.clientY);
+    if (!event || !target || target.closest("button")) return null;
     const pane = this._panes.shown.find(({ element }) => element.contains(target));
-    return pane?.transform && !target.closest("button") ? { pane, at: pane.local(event), event } : null;
+    return pane?.transform ? { pane, at: pane.local(event), event } : null;
   }
 
+  /** @param {Pane} pane */
   _attach(pane) {
     const { element } = pane;
     element.addEventListener("pointerenter", () => this._panes.activate(pane));
@@ -71,16 +105,14 @@ export class Pointer {
       this._over = null;
       this._intents.leave();
     });
-    element.addEventListener(
-      "dblclick",
-      (event) => event.target.closest("button") || this._intents.enlarge(pane, event),
-    );
+    element.addEventListener("dblclick", (event) => onButton(event) || this._intents.enlarge(pane, event));
     element.addEventListener("contextmenu", (event) => this._onMenu(pane, event));
     element.addEventListener("wheel", (event) => this._onWheel(pane, event), { passive: false });
   }
 
+  /** @param {Pane} pane @param {PointerEvent} event */
   _onDown(pane, event) {
-    if (event.target.closest("button") || !pane.transform) return;
+    if (onButton(event) || !pane.transform) return;
     this._panes.activate(pane);
     this._over = event;
     clearTimeout(this._longPress);
@@ -98,13 +130,17 @@ export class Pointer {
     if (event.pointerType === "touch") this._longPress = setTimeout(() => this._onLongPress(pane, event), LONG);
   }
 
-  /** A finger has no right button. Some systems say so themselves with a menu event, others don't: it is timed here. */
+  /**
+   * A finger has no right button. Some systems say so themselves with a menu event, others don't: it is timed here.
+   * @param {Pane} pane @param {PointerEvent} event
+   */
   _onLongPress(pane, event) {
     if (!this._press || this._press.dragged) return;
     this._forget(pane);
     this._intents.moveHere(pane, pane.local(event), event);
   }
 
+  /** @param {Pane} pane @param {PointerEvent} event */
   _onMove(pane, event) {
     this._over = event;
     if (this._fingers.move(pane, event)) return;
@@ -116,10 +152,11 @@ export class Pointer {
     if (!press.dragged) return;
     if (press.holding) return this._intents.drag(at);
     const last = pane.local(press.last);
-    pane.look(pane.transform.moved(at.x - last.x, at.y - last.y));
+    if (pane.transform) pane.look(pane.transform.moved(at.x - last.x, at.y - last.y));
     press.last = event;
   }
 
+  /** @param {Pane} pane @param {PointerEvent} event */
   _onUp(pane, event) {
     this._fingers.up(event);
     clearTimeout(this._longPress);
@@ -131,7 +168,10 @@ export class Pointer {
     this._click(pane, event);
   }
 
-  /** Fingers pan: on glass nobody should be moved by accident. Shift and the other buttons mean the picture, too. */
+  /**
+   * Fingers pan: on glass nobody should be moved by accident. Shift and the other buttons mean the picture, too.
+   * @param {Pane} pane @param {PointerEvent} event
+   */
   _gripOf(pane, event) {
     if (
       event.button !== 0 ||
@@ -144,6 +184,7 @@ export class Pointer {
     return this.grip(pane, pane.local(event));
   }
 
+  /** @param {Press} press */
   _beginDrag(press) {
     const { pane, grip, last } = press;
     press.dragged = true;
@@ -151,6 +192,7 @@ export class Pointer {
     pane.element.classList.add("dragging");
   }
 
+  /** @param {Pane} pane */
   _forget(pane) {
     clearTimeout(this._longPress);
     this._press = null;
@@ -158,6 +200,7 @@ export class Pointer {
     this._intents.cancelDrag();
   }
 
+  /** @param {Pane} pane @param {MouseEvent} event */
   _hover(pane, event) {
     if (!pane.transform) return;
     const at = pane.local(event);
@@ -166,6 +209,7 @@ export class Pointer {
     this._intents.hover(pane, at, grip?.person ?? null);
   }
 
+  /** @param {Pane} pane @param {MouseEvent} event */
   _click(pane, event) {
     const at = pane.local(event);
     if (otherView(event)) return this._intents.sight(pane, at, event);
@@ -177,7 +221,10 @@ export class Pointer {
     this._intents.select(this._inTurn(pane, at, found).person);
   }
 
-  /** Clicking on the same place again goes through everybody there. */
+  /**
+   * Clicking on the same place again goes through everybody there.
+   * @param {Pane} pane @param {XY} at @param {Person[]} found
+   */
   _inTurn(pane, at, found) {
     const last = this._lastPick;
     const again = last?.pane === pane && Math.hypot(at.x - last.at.x, at.y - last.at.y) <= AGAIN;
@@ -186,14 +233,15 @@ export class Pointer {
     return found[index];
   }
 
+  /** @param {Pane} pane @param {PointerEvent} event */
   _onMenu(pane, event) {
     event.preventDefault();
     if (event.pointerType === "touch") return; // a long press, which is timed
     const controlClick = event.ctrlKey && event.button === 0; // how a Mac asks for a menu: it is a click of ours
-    if (pane.transform && !controlClick && !event.target.closest("button"))
-      this._intents.moveHere(pane, pane.local(event), event);
+    if (pane.transform && !controlClick && !onButton(event)) this._intents.moveHere(pane, pane.local(event), event);
   }
 
+  /** @param {Pane} pane @param {WheelEvent} event */
   _onWheel(pane, event) {
     event.preventDefault();
     if (!pane.transform) return;
@@ -204,23 +252,35 @@ export class Pointer {
   }
 }
 
+/** @param {Pane} pane @param {Person} person @param {XY} at */
 function footDistance(pane, person, at) {
   const foot = pane.view.box(person) && pane.view.foot(person);
-  if (!foot) return Infinity;
+  if (!foot || !pane.transform) return Infinity;
   const { x, y } = pane.transform.toPane(foot.x, foot.y);
   return Math.hypot(x - at.x, y - at.y);
 }
 
-/** The key held that says: the same person, seen from here too. Some desktops keep Alt for themselves. */
+/**
+ * The key held that says: the same person, seen from here too. Some desktops keep Alt for themselves.
+ * @param {MouseEvent} event
+ */
 function otherView(event) {
   return event.altKey || event.ctrlKey || event.metaKey;
 }
 
-/** On the upper edge of a box in a camera's view, where the box is large enough to tell it from the rest. */
+/**
+ * On the upper edge of a box in a camera's view, where the box is large enough to tell it from the rest.
+ * @param {Pane} pane @param {Person} person @param {XY} at
+ */
 function onTop(pane, person, at) {
   const box = pane.view.index !== null && pane.view.box(person);
-  if (!box || (box.ymax - box.ymin) * pane.transform.scale < TALL) return false;
+  if (!box || !pane.transform || (box.ymax - box.ymin) * pane.transform.scale < TALL) return false;
   const { x: left, y: top } = pane.transform.toPane(box.xmin, box.ymin);
   const { x: right } = pane.transform.toPane(box.xmax, box.ymin);
   return Math.abs(at.y - top) <= EDGE && at.x >= left - EDGE && at.x <= right + EDGE;
+}
+
+/** A pane's own button was meant. @param {MouseEvent} event */
+function onButton({ target }) {
+  return target instanceof Element && target.closest("button") !== null;
 }

@@ -1,6 +1,10 @@
 /**
  * Shows where on the real screen something is about: a ring around people in every view, an outline around parts
  * of the page. It covers nothing and takes no click.
+ * @typedef {import("../truth/annotation.js").Annotation} Annotation
+ * @typedef {import("./regions.js").Item} Item
+ * @typedef {import("./regions.js").XY} XY
+ * @typedef {(annotation: Annotation) => boolean} Concerns
  */
 import { CYAN, HALO } from "./styles.js";
 
@@ -8,13 +12,15 @@ const AWAY = 7; // CSS pixels between a box and its ring
 const CLASS = "in-spotlight";
 
 export class Spotlight {
+  /** @param {import("./panes.js").Panes} panes */
   constructor(panes) {
     this._panes = panes;
+    /** @type {Concerns} */
     this._concerns = () => false;
     panes.addExtra((pane) => this._rings(pane));
   }
 
-  /** @param {{parts?: string, people?: (annotation) => boolean}} what CSS selector of parts, and who */
+  /** @param {{parts?: string|null, people?: Concerns}} what CSS selector of parts, and who */
   show({ parts = null, people = () => false }) {
     for (const lit of document.querySelectorAll(`.${CLASS}`)) lit.classList.remove(CLASS);
     if (parts) for (const part of document.querySelectorAll(parts)) part.classList.add(CLASS);
@@ -22,8 +28,8 @@ export class Spotlight {
     this._panes.markPeople();
   }
 
+  /** @param {import("./pane.js").LaidOutPane} pane @returns {Item[]} */
   _rings(pane) {
-    if (!pane.transform) return [];
     return [...this._panes.people().values()].filter(this._concerns).flatMap((one) => {
       const box = pane.view.box(one);
       return box
@@ -33,6 +39,7 @@ export class Spotlight {
   }
 }
 
+/** @param {Annotation} one @param {XY} low @param {XY} high @returns {Item} */
 function ringItem(one, low, high) {
   const [left, top] = [low.x - AWAY, low.y - AWAY];
   const [width, height] = [high.x - low.x + 2 * AWAY, high.y - low.y + 2 * AWAY];
@@ -43,9 +50,9 @@ function ringItem(one, low, high) {
     bounds: { xmin: left - 4, ymin: top - 4, xmax: left + width + 4, ymax: top + height + 4 },
     draw: (ctx) => {
       ctx.setLineDash([]);
-      for (const [colour, line] of [
-        [HALO, 5],
-        [CYAN, 2.5],
+      for (const { colour, line } of [
+        { colour: HALO, line: 5 },
+        { colour: CYAN, line: 2.5 },
       ]) {
         ctx.strokeStyle = colour;
         ctx.lineWidth = line;

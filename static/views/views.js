@@ -2,10 +2,23 @@ import { typed } from "../base/key_press.js";
 import { gettext } from "../base/messages.js";
 import { PLAIN, paintTone } from "./adjustments.js";
 
-/** Which views are shown, which one is large, and how bright each is; remembered by the settings. */
+/**
+ * Which views are shown, which one is large, and how bright each is; remembered by the settings.
+ * @typedef {import("./adjustments.js").Tone} Tone
+ * @typedef {import("./pane.js").Pane} Pane
+ * @typedef {object} Parts
+ * @property {import("./panes.js").AnyPanes} panes
+ * @property {import("./layout.js").Layout} layout
+ * @property {import("../workbench/settings.js").Settings} settings
+ * @property {Pick<import("../base/notices.js").Notices, "say">} notices
+ */
 export class Views {
+  /** @param {Parts} parts */
   constructor({ panes, layout, settings, notices }) {
-    Object.assign(this, { panes, settings, notices, _layout: layout });
+    this.panes = panes;
+    this.settings = settings;
+    this.notices = notices;
+    this._layout = layout;
     settings.watch("hiddenViews", () => this._arrange());
     settings.watch("largeView", () => this._arrange());
     settings.watch("tones", () => this._paintTones());
@@ -14,16 +27,19 @@ export class Views {
   /** Rows for the table of actions. */
   table() {
     return {
+      /** @param {KeyboardEvent} event */
       toggleView: (event) => this._toggleNumber(Number(typed(event))),
       largeView: () => this.toggleLarge(),
       allViews: () => this.showAll(),
     };
   }
 
+  /** @param {Pane} pane */
   isShown(pane) {
     return !pane.hidden;
   }
 
+  /** @param {Pane} pane @param {boolean} on */
   show(pane, on) {
     if (!on && this.panes.shown.length === 1) return this.notices.say(gettext("This is the last view: it stays"));
     const others = this.settings.get("hiddenViews").filter((id) => id !== pane.view.id);
@@ -37,7 +53,10 @@ export class Views {
     this.enlarge(this.panes.active);
   }
 
-  /** Large with the others around it; all alike again when it is large already. */
+  /**
+   * Large with the others around it; all alike again when it is large already.
+   * @param {Pane} pane
+   */
   enlarge(pane) {
     this.settings.set("largeView", this.settings.get("largeView") === pane.view.id ? "" : pane.view.id);
   }
@@ -47,17 +66,22 @@ export class Views {
     this.settings.set("hiddenViews", []);
   }
 
-  /** Brightness, contrast and gamma of one view; 1 is the picture as it is. */
+  /**
+   * Brightness, contrast and gamma of one view; 1 is the picture as it is.
+   * @param {Pane} pane @returns {Tone}
+   */
   tone(pane) {
     return { ...PLAIN, ...this.settings.get("tones")[pane.view.id] };
   }
 
+  /** @param {Pane[]} panes @param {Partial<Tone>} values */
   setTone(panes, values) {
     const tones = { ...this.settings.get("tones") };
     for (const pane of panes) tones[pane.view.id] = { ...PLAIN, ...tones[pane.view.id], ...values };
     this.settings.set("tones", tones);
   }
 
+  /** @param {number} number from 1 */
   _toggleNumber(number) {
     const pane = this.panes.all[number - 1];
     if (!pane) return this.notices.say(gettext("There is no view {number}", { number }));

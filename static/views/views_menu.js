@@ -2,10 +2,26 @@ import { element } from "../base/dom.js";
 import { gettext } from "../base/messages.js";
 import { PLAIN, RANGE } from "./adjustments.js";
 
-/** Beside the views, so that what it changes is seen at once: which are shown, which is large, how bright. */
+/** @type {(keyof import("./adjustments.js").Tone)[]} */
+const TONES = ["brightness", "contrast", "gamma"];
+
+/**
+ * Beside the views, so that what it changes is seen at once: which are shown, which is large, how bright.
+ * @typedef {import("./adjustments.js").Tone} Tone
+ * @typedef {import("./pane.js").Pane} Pane
+ * @typedef {{name: keyof Tone, input: HTMLInputElement}} Slider
+ * @typedef {object} Row
+ * @property {Pane|null} pane null: the row that sets all cameras at once
+ * @property {Pane[]} panes
+ * @property {HTMLInputElement|null} check
+ * @property {HTMLInputElement|null} large
+ * @property {Slider[]} sliders
+ */
 export class ViewsMenu {
+  /** @param {import("./views.js").Views} views */
   constructor(views) {
     this._views = views;
+    /** @type {Row[]} */
     this._rows = [];
     this.element = element(
       "section",
@@ -13,13 +29,15 @@ export class ViewsMenu {
       this._build(),
     );
     this._attach();
-    for (const name of ["hiddenViews", "largeView", "tones"]) views.settings.watch(name, () => this._update());
+    views.settings.watch("hiddenViews", () => this._update());
+    views.settings.watch("largeView", () => this._update());
+    views.settings.watch("tones", () => this._update());
   }
 
   toggle() {
     this.element.hidden = !this.element.hidden;
-    if (!this.element.hidden) this.element.querySelector("input").focus();
-    else document.activeElement?.blur();
+    if (!this.element.hidden) this.element.querySelector("input")?.focus();
+    else letGo();
   }
 
   _build() {
@@ -54,14 +72,15 @@ export class ViewsMenu {
     ];
   }
 
-  /** @param {object|null} pane null: the row that sets all cameras at once */
+  /** @param {string} title @param {Pane[]} panes @param {Pane|null} pane null: the row that sets all cameras at once */
   _row(title, panes, pane) {
+    /** @type {HTMLInputElement|null} */
     const check =
       pane &&
       element("input", {
         type: "checkbox",
         "aria-label": gettext("Show {view}", { view: title }),
-        onchange: ({ target }) => this._show(pane, target),
+        onchange: () => check && this._show(pane, check),
       });
     const large =
       pane &&
@@ -71,12 +90,18 @@ export class ViewsMenu {
         onchange: () => this._views.enlarge(pane),
       });
     const isPicture = panes.some(({ view }) => view.index !== null);
-    const sliders = isPicture ? Object.keys(PLAIN).map((name) => this._slider(name, title, panes)) : [];
-    const reset =
-      isPicture &&
-      this._button("↺", () => this._views.setTone(panes, PLAIN), gettext("{view} as it was", { view: title }));
+    const sliders = isPicture ? TONES.map((name) => this._slider(name, title, panes)) : [];
+    const reset = isPicture
+      ? this._button("↺", () => this._views.setTone(panes, PLAIN), gettext("{view} as it was", { view: title }))
+      : null;
     this._rows.push({ pane, panes, check, large, sliders });
-    const cells = [check, title, large, ...(isPicture ? [...sliders, reset] : [null, null, null, null])];
+    /** @type {(Node|string|null)[]} */
+    const cells = [
+      check,
+      title,
+      large,
+      ...(isPicture ? [...sliders.map(({ input }) => input), reset] : [null, null, null, null]),
+    ];
     return element(
       "tr",
       {},
@@ -84,17 +109,22 @@ export class ViewsMenu {
     );
   }
 
+  /** @param {keyof Tone} name @param {string} title @param {Pane[]} panes @returns {Slider} */
   _slider(name, title, panes) {
-    return element("input", {
+    const input = element("input", {
       type: "range",
-      ...RANGE,
-      value: 1,
+      min: String(RANGE.min),
+      max: String(RANGE.max),
+      step: String(RANGE.step),
+      value: "1",
       "data-tone": name,
       "aria-label": gettext("{what} of {view}", { what: toneWords(name), view: title }),
-      oninput: ({ target }) => this._views.setTone(panes, { [name]: target.valueAsNumber }),
+      oninput: () => this._views.setTone(panes, { [name]: input.valueAsNumber }),
     });
+    return { name, input };
   }
 
+  /** @param {string} text @param {() => void} onclick @param {string|null} [name] */
   _button(text, onclick, name = null) {
     return element(
       "button",
@@ -103,7 +133,10 @@ export class ViewsMenu {
     );
   }
 
-  /** The last view stays, whatever was clicked. */
+  /**
+   * The last view stays, whatever was clicked.
+   * @param {Pane} pane @param {HTMLInputElement} box
+   */
   _show(pane, box) {
     this._views.show(pane, box.checked);
     box.checked = this._views.isShown(pane);
@@ -117,18 +150,23 @@ export class ViewsMenu {
       event.stopPropagation();
       this.toggle();
     });
-    this.element.addEventListener("click", (event) => event.detail > 0 && document.activeElement?.blur());
+    this.element.addEventListener("click", (event) => event.detail > 0 && letGo());
   }
 
   _update() {
     const { settings } = this._views;
     for (const { pane, panes, check, large, sliders } of this._rows) {
-      if (check) check.checked = this._views.isShown(pane);
-      if (large) large.checked = settings.get("largeView") === pane.view.id;
+      if (check && pane) check.checked = this._views.isShown(pane);
+      if (large && pane) large.checked = settings.get("largeView") === pane.view.id;
       const tone = this._views.tone(panes[0]);
-      for (const slider of sliders) slider.value = tone[slider.dataset.tone];
+      for (const { name, input } of sliders) input.value = String(tone[name]);
     }
   }
+}
+
+/** The keys are the page's again. */
+function letGo() {
+  if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
 }
 
 function headings() {
@@ -143,6 +181,7 @@ function headings() {
   ];
 }
 
+/** @param {keyof Tone} name */
 function toneWords(name) {
   return { brightness: gettext("Brightness"), contrast: gettext("Contrast"), gamma: gettext("Gamma") }[name];
 }
