@@ -34,7 +34,7 @@ export function showSettings(settings) {
   );
   const close = element("button", { className: "main", autofocus: true }, gettext("Close"));
   const dialog = openDialog({ title: gettext("Settings"), body: fields });
-  dialog.querySelector("form").append(element("div", { className: "dialog-buttons" }, close, reset));
+  dialog.querySelector("form")?.append(element("div", { className: "dialog-buttons" }, close, reset));
   dialog.showModal();
 }
 
