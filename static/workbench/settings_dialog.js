@@ -86,14 +86,14 @@ function menu(settings, name, choices) {
  * @param {Settings} settings @param {One} name @param {{min: number, max: number, step: number}} range
  */
 function slider(settings, name, range) {
-  const input = element("input", { type: "range", ...range, value: settings.get(name) });
+  const input = element("input", { type: "range", ...range, value: String(settings.get(name)) });
   input.addEventListener("input", () => settings.set(name, /** @type {Values[One]} */ (input.valueAsNumber)));
   return input;
 }
 
 /** @template {Name} One @param {Settings} settings @param {One} name */
 function checkBox(settings, name) {
-  const input = element("input", { type: "checkbox", checked: settings.get(name) });
+  const input = element("input", { type: "checkbox", checked: settings.get(name) === true });
   input.addEventListener("change", () => settings.set(name, /** @type {Values[One]} */ (input.checked)));
   return input;
 }

@@ -15,11 +15,13 @@ const BELOW = 7; // under the feet, where no box is
  * @param {import("./warnings.js").Warnings} warnings @param {import("../../views/panes.js").Panes} panes @param {Pane} pane
  */
 export function warningItems(warnings, panes, pane) {
-  return warnings.of(panes.store.current).flatMap((warning) =>
-    warning.at
-      .flatMap((ground) => onPane(pane, ground) ?? [])
-      .map((place, index) => item(warning, place, index, comesFrom(pane, warning))),
-  );
+  return warnings
+    .of(panes.store.current)
+    .flatMap((warning) =>
+      warning.at
+        .flatMap((ground) => onPane(pane, ground) ?? [])
+        .map((place, index) => item(warning, place, index, comesFrom(pane, warning))),
+    );
 }
 
 /** @param {Warning} warning @param {XY} place @param {number} index @param {XY|null} from */

@@ -93,13 +93,13 @@ export class Warnings extends Emitter {
 
   /** Runs of frames that are loaded: across a gap nothing can be said. */
   _pieces() {
-    /** @type {Moment[]} */
-    let piece = [];
-    const pieces = [piece];
+    /** @type {Moment[][]} */
+    const pieces = [[]];
     for (const number of this._store.numbers) {
       const { loaded, people } = this._store.frame(number);
+      const piece = pieces[pieces.length - 1];
       if (loaded) piece.push({ number, time: this._scene.seconds(number), people });
-      else if (piece.length) pieces.push((piece = []));
+      else if (piece.length) pieces.push([]);
     }
     return pieces;
   }
