@@ -85,7 +85,8 @@ function menu(settings, name, choices) {
  * @template {Name} One
  * @param {Settings} settings @param {One} name @param {{min: number, max: number, step: number}} range
  */
-function slider(settings, name, range) {
+function slider(settings, name, { min, max, step }) {
+  const range = { min: String(min), max: String(max), step: String(step) };
   const input = element("input", { type: "range", ...range, value: String(settings.get(name)) });
   input.addEventListener("input", () => settings.set(name, /** @type {Values[One]} */ (input.valueAsNumber)));
   return input;
