@@ -87,7 +87,7 @@ export class KeyActions {
 
   async _save() {
     const saved = await this._saver.flush();
-    this._notices.say(saved ? gettext("Everything is saved") : saveWords(this._saver.status(), null).text);
+    this._notices.say(saved ? gettext("Everything is saved") : saveWords(this._saver.status(), 0).text);
   }
 
   _toggleZoom() {
