@@ -5,55 +5,76 @@ import { saveWords } from "../saving/save_words.js";
 import { carriedOf } from "../truth/annotation.js";
 import { titleFor } from "./keys/keys.js";
 
+/**
+ * @typedef {object} Parts
+ * @property {import("../truth/scene.js").Scene} scene
+ * @property {import("../truth/store.js").Store} store
+ * @property {import("../saving/saver.js").Saver} saver
+ * @property {import("../views/panes.js").Panes} panes
+ * @property {import("./actions.js").Perform} perform
+ * @property {string} home the address one came from
+ * @property {string} signIn an address
+ */
+
 const THEME_KEY = "gtm-theme"; // shared with the ordinary pages
 
 /** The line on top: where one is, what is left, how it is saved, and a button for everything. */
 export class Bar {
+  /** @param {Parts} parts */
   constructor({ scene, store, saver, panes, perform, home, signIn }) {
-    Object.assign(this, { scene, store, saver, panes });
+    this.scene = scene;
+    this.store = store;
+    this.saver = saver;
+    this.panes = panes;
     this._perform = perform;
-    this.element = this._build(home, signIn);
+    this._home = element("a", { className: "home", href: home, title: gettext("Back") }, "‹ ", nameOf(scene));
+    this._place = element("strong", { className: "place" });
+    this._left = element("span", { className: "left" });
+    this._mode = element("span", { className: "mode" });
+    this._words = element("span", { className: "save-words", role: "status" });
+    this._link = element("a", { href: signIn, target: "_blank", rel: "noopener", hidden: true });
+    this._saved = element("span", { className: "save", "data-save": "" }, this._words, this._link);
+    this._toggles = toggles().map(({ id, text, isOn }) => {
+      return { isOn, button: this._button(id, text, { "aria-pressed": "false" }) };
+    });
+    this.element = this._build();
     store.on("change", () => paintSoon(this));
     store.on("frame", () => paintSoon(this));
     saver.on("status", () => paintSoon(this));
-    for (const name of ["zoom", "options"]) panes.on(name, () => paintSoon(this));
+    panes.on("zoom", () => paintSoon(this));
+    panes.on("options", () => paintSoon(this));
     this.paint();
   }
 
-  /** What one needs to know about the keyboard at the moment. */
+  /**
+   * What one needs to know about the keyboard at the moment.
+   * @param {boolean} controls
+   */
   showMode(controls) {
     setText(this._mode, controls ? gettext("Buttons: Tab moves, Esc returns to annotating") : "");
   }
 
-  _build(home, signIn) {
-    this._place = element("strong", { className: "place" });
-    this._left = element("span", { className: "left" });
-    this._mode = element("span", { className: "mode" });
-    this._saved = element("span", { className: "save-words", role: "status" });
-    this._link = element("a", { href: signIn, target: "_blank", rel: "noopener", hidden: true });
-    this._toggles = ["round", "zoom", "outline", "directions"].map((id) =>
-      this._button(id, toggleText(id), { "aria-pressed": "false" }),
-    );
+  /** To the first of its buttons. */
+  takeFocus() {
+    this._home.focus();
+  }
+
+  _build() {
     return element(
       "header",
       { className: "bar" },
       element("h1", { className: "visually-hidden" }, gettext("Workbench")),
-      element(
-        "a",
-        { className: "home", href: home, title: gettext("Back") },
-        "‹ ",
-        this.scene.assignment?.batch ?? this.scene.layer?.name ?? this.scene.dataset.name,
-      ),
+      this._home,
       this._button("previousFrame", "◀", { "aria-label": gettext("Previous frame") }),
       this._place,
       this._button("nextFrame", "▶", { "aria-label": gettext("Next frame") }),
       this._left,
       element("span", { className: "gap" }),
       this._mode,
-      element("span", { className: "save", "data-save": "" }, this._saved, this._link),
+      this._saved,
       this._button("undo", "↶", { "aria-label": gettext("Undo") }),
       this._button("redo", "↷", { "aria-label": gettext("Redo") }),
-      ...this._toggles,
+      ...this._toggles.map(({ button }) => button),
       this._button("views", gettext("Views")),
       element(
         "button",
@@ -71,23 +92,19 @@ export class Bar {
     );
   }
 
+  /** @param {string} id @param {string} text @param {Record<string, string>} [properties] */
   _button(id, text, properties = {}) {
-    return element(
+    const button = element(
       "button",
-      {
-        type: "button",
-        className: "quiet",
-        "data-action": id,
-        title: titleFor(id),
-        ...properties,
-        onclick: (event) => {
-          this._perform(id);
-          // A mouse press must not leave the focus here: Space would press the button again.
-          if (event.detail > 0) event.currentTarget.blur();
-        },
-      },
+      { type: "button", className: "quiet", "data-action": id, title: titleFor(id), ...properties },
       text,
     );
+    button.addEventListener("click", (/** @type {MouseEvent} */ event) => {
+      this._perform(id);
+      // A mouse press must not leave the focus here: Space would press the button again.
+      if (event.detail > 0) button.blur();
+    });
+    return button;
   }
 
   paint() {
@@ -98,18 +115,12 @@ export class Bar {
     setText(this._left, this._countWords());
     const status = saver.status();
     const { text, link } = saveWords(status, saver.revision(store.current), this.scene.mode === "tutorial");
-    setText(this._saved, text);
-    this._saved.title = text; // where there is no room for it
+    setText(this._words, text);
+    this._words.title = text; // where there is no room for it
     setText(this._link, link ?? "");
     this._link.hidden = !link;
-    this._saved.parentElement.dataset.save = status.kind;
-    const on = {
-      round: this.panes.closeUp,
-      zoom: this.panes.zoomed,
-      outline: this.panes.options.outline,
-      directions: this.panes.options.directions,
-    };
-    for (const button of this._toggles) button.setAttribute("aria-pressed", String(Boolean(on[button.dataset.action])));
+    this._saved.dataset.save = status.kind;
+    for (const { button, isOn } of this._toggles) button.setAttribute("aria-pressed", String(isOn(this.panes)));
   }
 
   _countWords() {
@@ -120,13 +131,19 @@ export class Bar {
   }
 }
 
-function toggleText(id) {
-  return {
-    round: gettext("One by one"),
-    zoom: gettext("Zoom"),
-    outline: gettext("Area"),
-    directions: gettext("Arrows"),
-  }[id];
+/** @param {import("../truth/scene.js").Scene} scene */
+function nameOf({ assignment, layer, dataset }) {
+  return assignment?.batch ?? layer?.name ?? dataset.name;
+}
+
+/** @returns {{id: string, text: string, isOn: (panes: import("../views/panes.js").Panes) => boolean}[]} */
+function toggles() {
+  return [
+    { id: "round", text: gettext("One by one"), isOn: ({ closeUp }) => closeUp },
+    { id: "zoom", text: gettext("Zoom"), isOn: ({ zoomed }) => zoomed },
+    { id: "outline", text: gettext("Area"), isOn: ({ options }) => options.outline },
+    { id: "directions", text: gettext("Arrows"), isOn: ({ options }) => options.directions },
+  ];
 }
 
 function toggleTheme() {

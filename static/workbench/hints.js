@@ -3,12 +3,24 @@ import { gettext } from "../base/messages.js";
 import { carriedOf } from "../truth/annotation.js";
 import { keyFor } from "./keys/keys.js";
 
+/**
+ * @typedef {"moving"|"yellow"|"zooming"} HintId
+ * @typedef {object} Parts
+ * @property {import("../truth/store.js").Store} store
+ * @property {import("../views/panes.js").Panes} panes
+ * @property {import("./settings.js").Settings} settings
+ */
+
 const SHOWN = 20_000; // ms
 
 /** One short hint under the list of people when it is needed for the first time; none comes twice. */
 export class Hints {
+  /** @param {Parts} parts */
   constructor({ store, panes, settings }) {
-    Object.assign(this, { _store: store, _settings: settings, _timer: null });
+    this._store = store;
+    this._settings = settings;
+    /** @type {ReturnType<typeof setTimeout>|undefined} */
+    this._timer = undefined;
     this._text = element("p", {});
     const close = element(
       "button",
@@ -28,6 +40,7 @@ export class Hints {
     if (carriedOf(this._store.people()).length) this._give("yellow");
   }
 
+  /** @param {HintId} id */
   _give(id) {
     const shown = this._settings.get("hintsShown");
     if (!this._settings.get("hints") || shown.includes(id)) return;
@@ -42,15 +55,19 @@ export class Hints {
     this._box.hidden = true;
   }
 
-  /** Whoever switches them on again wants to read them again. */
+  /**
+   * Whoever switches them on again wants to read them again.
+   * @param {boolean} on
+   */
   _switch(on) {
     if (on) this._settings.reset("hintsShown");
     else this._hide();
   }
 }
 
+/** @param {HintId} id */
 function words(id) {
-  return {
+  const texts = {
     moving: () =>
       gettext(
         "Arrow keys move the person by one position, {far} by ten. {zoom} shows the person large in all views, {help} all keys.",
@@ -73,5 +90,6 @@ function words(id) {
         "Drag moves the zoomed picture, a double click makes the view large, {views} sets brightness and contrast.",
         { views: keyFor("views") },
       ),
-  }[id]();
+  };
+  return texts[id]();
 }

@@ -2,47 +2,49 @@ import { fetchedDialog } from "../base/lazy.js";
 import { gettext } from "../base/messages.js";
 import { saveWords } from "../saving/save_words.js";
 
+/**
+ * @typedef {object} Parts
+ * @property {import("../truth/store.js").Store} store
+ * @property {import("../saving/saver.js").Saver} saver
+ * @property {import("./settings.js").Settings} settings
+ * @property {import("../views/panes.js").Panes} panes
+ * @property {import("../base/notices.js").Notices} notices
+ * @property {import("./frames/navigation.js").Navigation} navigation
+ * @property {import("./placing/guard.js").Guard} guard
+ * @property {import("./placing/heads.js").Heads} heads
+ * @property {import("./placing/dragging.js").Dragging} dragging
+ * @property {import("../views/intents.js").Intents} intents what a click means, for keys that do the same
+ * @property {import("../views/pointer.js").Pointer} pointer
+ * @property {(on: boolean) => void} setControls
+ */
+
 /** What keys and buttons do that no other topic does: frames, zoom, display, dialogs, the way out. */
 export class KeyActions {
-  /**
-   * @param {{intents: import("../views/intents.js").Intents, pointer: import("../views/pointer.js").Pointer,
-   *          setControls: (on: boolean) => void}} parts the pointer's place and meaning are for keys that do what a click does
-   */
-  constructor({
-    store,
-    saver,
-    settings,
-    panes,
-    notices,
-    navigation,
-    guard,
-    heads,
-    dragging,
-    intents,
-    pointer,
-    setControls,
-  }) {
-    Object.assign(this, {
-      _store: store,
-      _saver: saver,
-      _settings: settings,
-      _panes: panes,
-      _notices: notices,
-      _navigation: navigation,
-    });
-    Object.assign(this, {
-      _guard: guard,
-      _heads: heads,
-      _dragging: dragging,
-      _intents: intents,
-      _pointer: pointer,
-      _setControls: setControls,
-    });
+  /** @param {Parts} parts */
+  constructor(parts) {
+    this._store = parts.store;
+    this._saver = parts.saver;
+    this._settings = parts.settings;
+    this._panes = parts.panes;
+    this._notices = parts.notices;
+    this._navigation = parts.navigation;
+    this._guard = parts.guard;
+    this._heads = parts.heads;
+    this._dragging = parts.dragging;
+    this._intents = parts.intents;
+    this._pointer = parts.pointer;
+    this._setControls = parts.setControls;
+    const { notices } = parts;
+    /** @type {() => Promise<typeof import("./keys/help.js")|null>} */
     this._help = fetchedDialog(notices, import.meta.resolve("./keys/help.js"));
+    /** @type {() => Promise<typeof import("./settings_dialog.js")|null>} */
     this._settingsDialog = fetchedDialog(notices, import.meta.resolve("./settings_dialog.js"));
   }
 
-  /** Rows for the table of actions, by the ids of the key table. */
+  /**
+   * Rows for the table of actions, by the ids of the key table.
+   * @returns {import("./actions.js").ActionTable}
+   */
   table() {
     return {
       moveHere: () => this._moveUnderPointer(),
@@ -78,13 +80,14 @@ export class KeyActions {
     this._intents.moveHere(under.pane, under.at, under.event);
   }
 
+  /** @param {import("./settings.js").Switch} name */
   _toggle(name) {
     this._settings.set(name, !this._settings.get(name));
   }
 
   async _save() {
     const saved = await this._saver.flush();
-    this._notices.say(saved ? gettext("Everything is saved") : saveWords(this._saver.status(), null).text);
+    this._notices.say(saved ? gettext("Everything is saved") : saveWords(this._saver.status(), 0).text);
   }
 
   _toggleZoom() {

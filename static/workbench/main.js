@@ -8,17 +8,22 @@ import { fetchTables } from "../tables/tables.js";
 import { started } from "./start.js";
 import { buildWorkbench } from "./workbench.js";
 
-const { mode, home } = document.body.dataset;
+const { mode = "", home = "" } = document.body.dataset;
 const root = document.getElementById("workbench");
+if (!root) throw new Error("this page has no place for the workbench");
 
+/** @param {unknown} error */
 function reason(error) {
-  if (!(error instanceof NetworkError || error instanceof ApiError)) return error.message;
+  if (!(error instanceof NetworkError || error instanceof ApiError))
+    return error instanceof Error ? error.message : String(error);
   return gettext("It could not be loaded: {reason}.", { reason: failureWords(error) });
 }
 
 try {
   const waiting = root.querySelector(".starting");
-  const session = await openSession(await started, (words) => (waiting.textContent = words));
+  const session = await openSession(await started, (words) => {
+    if (waiting) waiting.textContent = words;
+  });
   await buildWorkbench(root, session, { mode, home });
   root.dataset.ready = "true";
   fetchTables(session, session.store.current);

@@ -9,7 +9,18 @@ import { Moving } from "./placing/moving.js";
 import { MultiViewClick } from "./placing/multi_view_click.js";
 import { Sizes } from "./placing/sizes.js";
 
-/** Whatever places people, moves them and makes them larger, each with what it needs. */
+/**
+ * @typedef {import("../saving/session.js").Session} Session
+ * @typedef {object} Page
+ * @property {import("./settings.js").Settings} settings
+ * @property {import("../views/panes.js").Panes} panes
+ * @property {import("../base/notices.js").Notices} notices
+ */
+
+/**
+ * Whatever places people, moves them and makes them larger, each with what it needs.
+ * @param {Session} session @param {Page} page
+ */
 export function placingParts({ scene, store, history, saver, loader }, { settings, panes, notices }) {
   const held = new KeyRepeat(settings);
   const arrows = new Arrows({ panes, settings, held });

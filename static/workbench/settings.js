@@ -8,12 +8,49 @@ import { gettext } from "../base/messages.js";
 const PREFIX = "gtm-workbench-";
 
 /**
- * @typedef {{value: any, label?: () => string, group?: string, choices?: () => [any, string][],
- *            range?: {min: number, max: number, step: number}, hint?: () => string}} Row
- * true or false: a check box; with `choices`: a menu; with `range`: a slider.
+ * @typedef {"none"|"selected"|"all"} WhosePaths
+ * @typedef {{brightness: number, contrast: number, gamma: number}} Tone 1 is the picture as it is
+ * @typedef {object} Values what can be chosen, by the names of the table
+ * @property {"screen"|"ground"} arrowAxes
+ * @property {boolean} heldKeysSpeedUp
+ * @property {boolean} ghost
+ * @property {number} playSpeed
+ * @property {WhosePaths} pathsOnMap
+ * @property {WhosePaths} pathsInViews
+ * @property {number} labelOpacity
+ * @property {number} boxOpacity
+ * @property {boolean} outline
+ * @property {boolean} grid
+ * @property {boolean} directions
+ * @property {boolean} hints
+ * @property {string[]} hintsShown
+ * @property {Record<string, string[]>} keys chords by the ids of the key table
+ * @property {string[]} hiddenViews
+ * @property {string} largeView empty: none
+ * @property {Record<string, Partial<Tone>>} tones by the ids of views
+ * @property {boolean} filmstrip
+ * @property {boolean} warningsOpen
+ *
+ * @typedef {keyof Values} Name
+ * @typedef {{[One in Name]: Values[One] extends boolean ? One : never}[Name]} Switch those that are on or off
+ * @typedef {{[One in Name]: {name: One, value: Values[One]}}[Name]} Change
+ * @typedef {"placing"|"moving"|"seeing"|"time"|"other"} Group
  */
 
-/** @type {Record<string, Row>} */
+/**
+ * true or false: a check box; with `choices`: a menu; with `range`: a slider.
+ * @template Value
+ * @typedef {{value: Value, label?: () => string, group?: Group, choices?: () => [Value, string][],
+ *            range?: {min: number, max: number, step: number}, hint?: () => string}} Row
+ */
+
+/**
+ * A row as the dialog shows it.
+ * @template {Name} One
+ * @typedef {Row<Values[One]> & {name: One, label: () => string}} LabelledRow
+ */
+
+/** @type {{[One in Name]: Row<Values[One]>}} */
 const TABLE = {
   arrowAxes: {
     value: "screen",
@@ -78,7 +115,9 @@ const TABLE = {
   filmstrip: { value: false },
   warningsOpen: { value: true },
 };
+const NAMES = /** @type {Name[]} */ (Object.keys(TABLE));
 
+/** @type {Record<Group, () => string>} */
 const GROUPS = {
   placing: () => gettext("Placing"),
   moving: () => gettext("Moving"),
@@ -87,71 +126,102 @@ const GROUPS = {
   other: () => gettext("Everything else"),
 };
 
-/** Emits `change` {name, value}, also for what another tab of this browser chose. */
+/**
+ * Emits `change` {name, value}, also for what another tab of this browser chose.
+ * @extends {Emitter<{change: Change}>}
+ */
 export class Settings extends Emitter {
+  /** @param {Storage|null} storage null: choices last for this page only */
   constructor(storage = safeStorage()) {
     super();
     this._storage = storage;
-    this._values = new Map(Object.keys(TABLE).map((name) => [name, this._read(name)]));
+    this._values = /** @type {Values} */ (Object.fromEntries(NAMES.map((name) => [name, this._read(name)])));
     window.addEventListener("storage", ({ key }) => key?.startsWith(PREFIX) && this._reread(key.slice(PREFIX.length)));
   }
 
+  /** @template {Name} One @param {One} name @returns {Values[One]} */
   get(name) {
-    if (!this._values.has(name)) throw new RangeError(`unknown setting ${name}`);
-    return this._values.get(name);
+    if (!isName(name)) throw new RangeError(`unknown setting ${name}`);
+    return this._values[name];
   }
 
+  /** @template {Name} One @param {One} name @param {Values[One]} value */
   set(name, value) {
-    if (!fits(TABLE[name], value)) throw new TypeError(`setting ${name} cannot be ${JSON.stringify(value)}`);
-    this._values.set(name, value);
+    if (!fits(name, value)) throw new TypeError(`setting ${name} cannot be ${JSON.stringify(value)}`);
+    this._values[name] = value;
     try {
       this._storage?.setItem(PREFIX + name, JSON.stringify(value));
     } catch {
       // the choice then lasts for this page only
     }
-    this.emit("change", { name, value });
+    this._tell(name);
   }
 
+  /** @param {Name} name */
   reset(name) {
-    this.set(name, structuredClone(TABLE[name].value));
+    this.set(name, valueAtFirst(name));
   }
 
-  /** Call at once and whenever it changes. @returns {() => void} stops it */
+  /**
+   * Call at once and whenever it changes.
+   * @template {Name} One
+   * @param {One} name @param {(value: Values[One]) => void} listener
+   * @returns {() => void} stops it
+   */
   watch(name, listener) {
     listener(this.get(name));
-    return this.on("change", (change) => change.name === name && listener(change.value));
+    return this.on("change", (change) => change.name === name && listener(this.get(name)));
   }
 
+  /** @param {string} name */
   _reread(name) {
-    if (!(name in TABLE)) return;
-    this._values.set(name, this._read(name));
-    this.emit("change", { name, value: this.get(name) });
+    if (!isName(name)) return;
+    Object.assign(this._values, { [name]: this._read(name) });
+    this._tell(name);
   }
 
-  /** What was stored by an older version, or by hand, may not fit any more. */
+  /** @param {Name} name */
+  _tell(name) {
+    this.emit("change", /** @type {Change} */ ({ name, value: this.get(name) }));
+  }
+
+  /**
+   * What was stored by an older version, or by hand, may not fit any more.
+   * @template {Name} One
+   * @param {One} name @returns {Values[One]}
+   */
   _read(name) {
     try {
+      /** @type {unknown} */
       const value = JSON.parse(this._storage?.getItem(PREFIX + name) ?? "null");
-      if (fits(TABLE[name], value)) return value;
+      if (fits(name, value)) return value;
     } catch {
       // not JSON, or storage is forbidden
     }
-    return structuredClone(TABLE[name].value);
+    return valueAtFirst(name);
   }
 }
 
-/** Groups of rows for the dialog: [{title, rows: [{name, ...row}]}]. */
+/** @template {Name} One @param {One} name @returns {Values[One]} */
+function valueAtFirst(name) {
+  return structuredClone(TABLE[name].value);
+}
+
+/** Groups of rows for the dialog. */
 export function settingGroups() {
   return Object.entries(GROUPS)
-    .map(([group, title]) => ({
-      title: title(),
-      rows: Object.entries(TABLE)
-        .filter(([, row]) => row.label && row.group === group)
-        .map(([name, row]) => ({ name, ...row })),
-    }))
+    .map(([group, title]) => ({ title: title(), rows: NAMES.flatMap((name) => labelled(name, group)) }))
     .filter(({ rows }) => rows.length);
 }
 
+/** @template {Name} One @param {One} name @param {string} group @returns {LabelledRow<One>[]} one, or none */
+function labelled(name, group) {
+  /** @type {Row<Values[One]>} */
+  const row = TABLE[name];
+  return row.label && row.group === group ? [{ ...row, name, label: row.label }] : [];
+}
+
+/** @returns {[WhosePaths, string][]} */
 function pathChoices() {
   return [
     ["none", gettext("none")],
@@ -160,16 +230,27 @@ function pathChoices() {
   ];
 }
 
-function fits(row, value) {
+/** @param {string} name @returns {name is Name} */
+function isName(name) {
+  return NAMES.some((one) => one === name);
+}
+
+/** @template {Name} One @param {One} name @param {unknown} value @returns {value is Values[One]} */
+function fits(name, value) {
+  const row = isName(name) && TABLE[name];
   if (!row || value === null || kind(value) !== kind(row.value)) return false;
   if (row.choices) return row.choices().some(([choice]) => choice === value);
-  if (row.range) return value >= row.range.min && value <= row.range.max;
+  if (row.range) return Number(value) >= row.range.min && Number(value) <= row.range.max;
   return true;
 }
 
-/** Choices that are also options of display, by the name they have there. */
+/**
+ * Choices that are also options of display, by the name they have there.
+ * @type {("labelOpacity"|"boxOpacity"|"outline"|"grid"|"directions")[]}
+ */
 export const DISPLAYED = ["labelOpacity", "boxOpacity", "outline", "grid", "directions"];
 
+/** @param {unknown} value */
 function kind(value) {
   return Array.isArray(value) ? "array" : typeof value;
 }

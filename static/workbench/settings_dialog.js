@@ -3,7 +3,21 @@ import { element } from "../base/dom.js";
 import { gettext } from "../base/messages.js";
 import { settingGroups } from "./settings.js";
 
-/** Made from the table of settings; every change counts at once, so there is nothing to confirm. */
+/**
+ * @typedef {import("./settings.js").Name} Name
+ * @typedef {import("./settings.js").Settings} Settings
+ * @typedef {import("./settings.js").Values} Values
+ */
+
+/**
+ * @template {Name} One
+ * @typedef {import("./settings.js").LabelledRow<One>} LabelledRow
+ */
+
+/**
+ * Made from the table of settings; every change counts at once, so there is nothing to confirm.
+ * @param {Settings} settings
+ */
 export function showSettings(settings) {
   const fields = settingGroups().map(({ title, rows }) =>
     element(
@@ -20,10 +34,11 @@ export function showSettings(settings) {
   );
   const close = element("button", { className: "main", autofocus: true }, gettext("Close"));
   const dialog = openDialog({ title: gettext("Settings"), body: fields });
-  dialog.querySelector("form").append(element("div", { className: "dialog-buttons" }, close, reset));
+  dialog.querySelector("form")?.append(element("div", { className: "dialog-buttons" }, close, reset));
   dialog.showModal();
 }
 
+/** @param {Settings} settings @param {HTMLElement[]} fields a group of settings each */
 function resetAll(settings, fields) {
   settingGroups().forEach(({ rows }, index) => {
     rows.forEach(({ name }) => settings.reset(name));
@@ -31,6 +46,10 @@ function resetAll(settings, fields) {
   });
 }
 
+/**
+ * @template {Name} One
+ * @param {Settings} settings @param {LabelledRow<One>} row
+ */
 function field(settings, row) {
   const control = controlOf(settings, row);
   control.dataset.setting = row.name;
@@ -38,27 +57,44 @@ function field(settings, row) {
   return element("label", { className: "setting" }, row.choices || row.range ? [text, control] : [control, text]);
 }
 
+/**
+ * @template {Name} One
+ * @param {Settings} settings @param {LabelledRow<One>} row
+ */
 function controlOf(settings, { name, choices, range }) {
+  if (choices) return menu(settings, name, choices());
+  return range ? slider(settings, name, range) : checkBox(settings, name);
+}
+
+/**
+ * @template {Name} One
+ * @param {Settings} settings @param {One} name @param {[Values[One], string][]} choices
+ */
+function menu(settings, name, choices) {
   const value = settings.get(name);
-  if (choices) {
-    const options = choices();
-    return element(
-      "select",
-      { onchange: ({ target }) => settings.set(name, options[target.selectedIndex][0]) },
-      options.map(([choice, label]) => element("option", { selected: choice === value }, label)),
-    );
-  }
-  if (range) {
-    return element("input", {
-      type: "range",
-      ...range,
-      value,
-      oninput: ({ target }) => settings.set(name, target.valueAsNumber),
-    });
-  }
-  return element("input", {
-    type: "checkbox",
-    checked: value,
-    onchange: ({ target }) => settings.set(name, target.checked),
-  });
+  const select = element(
+    "select",
+    {},
+    choices.map(([choice, label]) => element("option", { selected: choice === value }, label)),
+  );
+  select.addEventListener("change", () => settings.set(name, choices[select.selectedIndex][0]));
+  return select;
+}
+
+/**
+ * @template {Name} One
+ * @param {Settings} settings @param {One} name @param {{min: number, max: number, step: number}} range
+ */
+function slider(settings, name, { min, max, step }) {
+  const range = { min: String(min), max: String(max), step: String(step) };
+  const input = element("input", { type: "range", ...range, value: String(settings.get(name)) });
+  input.addEventListener("input", () => settings.set(name, /** @type {Values[One]} */ (input.valueAsNumber)));
+  return input;
+}
+
+/** @template {Name} One @param {Settings} settings @param {One} name */
+function checkBox(settings, name) {
+  const input = element("input", { type: "checkbox", checked: settings.get(name) === true });
+  input.addEventListener("change", () => settings.set(name, /** @type {Values[One]} */ (input.checked)));
+  return input;
 }

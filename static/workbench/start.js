@@ -3,15 +3,20 @@ import { useCatalog } from "../base/messages.js";
 import { Images } from "../views/images.js";
 
 /**
+ * @typedef {import("../base/answers.js").SceneAnswer} Answer
+ * @typedef {{api: Api, scene: Answer, first: number, images: Images}} Started `first`: the frame to open
+ */
+
+/**
  * What takes longest is asked for first: this module is small, and the scene and the first pictures are on their
  * way while the browser still fetches the others.
- * @returns {Promise<{api: Api, scene: object, first: number, images: Images}>} `scene` as the server answers it;
- *   `first`: the frame to open
+ * @returns {Promise<Started>}
  */
 async function start() {
-  const { api: base, token, mode } = document.body.dataset;
-  const csrf = document.querySelector("meta[name=csrf-token]")?.content ?? "";
-  const api = new Api({ base, token, mode, csrf });
+  const { api: base = "", token = "", mode = "" } = document.body.dataset;
+  /** @type {HTMLMetaElement|null} */
+  const meta = document.querySelector("meta[name=csrf-token]");
+  const api = new Api({ base, token, mode, csrf: meta?.content ?? "" });
   const scene = await api.scene();
   const first = firstUnfinished(scene);
   const images = new Images(api, scene);
@@ -19,7 +24,10 @@ async function start() {
   return { api, scene, first, images };
 }
 
-/** Continue where one was. */
+/**
+ * Continue where one was.
+ * @param {Answer} scene
+ */
 function firstUnfinished({ frames }) {
   return (frames.find(({ done }) => !done) ?? frames[0]).number;
 }

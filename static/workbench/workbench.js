@@ -34,10 +34,34 @@ import { Warnings } from "./warnings/warnings.js";
 import { WarningsPanel } from "./warnings/warnings_panel.js";
 
 /**
+ * @typedef {import("../saving/session.js").Session} Session
+ * @typedef {import("../views/pane.js").Pane} Pane
+ * @typedef {import("./actions.js").ActionTable} ActionTable
+ * @typedef {import("./actions.js").Perform} Perform
+ *
+ * @typedef {object} Page
+ * @property {Settings} settings
+ * @property {Panes} panes
+ * @property {Notices} notices
+ * @property {Navigation} navigation
+ *
+ * @typedef {object} OtherParts
+ * @property {(person: number|null) => void} select
+ * @property {Playback} playback
+ * @property {IdentityActions} identity
+ * @property {Views} views
+ * @property {(on: boolean) => void} setControls
+ *
+ * @typedef {ReturnType<typeof placingParts>} Placing
+ * @typedef {Placing & OtherParts} Parts
+ */
+
+/**
  * Builds the page over a session inside `root` and connects its parts. What few need, and nobody without the
  * server, is fetched when it is needed.
- * @param {import("../saving/session.js").Session} session
- * @param {{mode: string, home: string}} settings
+ * @param {HTMLElement} root
+ * @param {Session} session
+ * @param {{mode: string, home: string}} page `home`: the address one came from
  */
 export async function buildWorkbench(root, session, { mode, home }) {
   const { scene, store, images, activity } = session;
@@ -45,7 +69,9 @@ export async function buildWorkbench(root, session, { mode, home }) {
   const panes = new Panes({ scene, store, images, options: startOptions() });
   settings.on("change", () => panes.markPeople(true));
   const notices = new Notices();
+  /** @type {() => Promise<typeof import("./frames/finish.js")|null>} */
   const finishing = fetchedDialog(notices, import.meta.resolve("./frames/finish.js"));
+  /** @returns {Promise<unknown>} */
   const finish = async () => (await finishing())?.finishAssignment({ ...session, navigation, notices, home });
   const navigation = new Navigation({ ...session, notices, finish });
   const page = { settings, panes, notices, navigation };
@@ -53,12 +79,14 @@ export async function buildWorkbench(root, session, { mode, home }) {
   const { guard, heads, ghost } = placing;
   const playback = new Playback({ ...session, navigation, settings });
   const actions = new Actions();
+  /** @type {Perform} */
   const perform = (id, event) => {
     activity.note(store.current);
     if (id !== "play") playback.stop();
     actions.perform(id, event);
   };
   const bar = new Bar({ ...session, panes, perform, home, signIn: signInAddress(mode, home) });
+  /** @param {number|null} person */
   const select = (person) => {
     ghost.hide();
     store.select(person);
@@ -87,7 +115,11 @@ export async function buildWorkbench(root, session, { mode, home }) {
   if (mode === "tutorial") await startTutorial(panel, { ...session, panes, navigation, home });
 }
 
-/** What the tutorial does without: buttons about the person, warnings, hints, the frame's history. */
+/**
+ * What the tutorial does without: buttons about the person, warnings, hints, the frame's history.
+ * @param {PeoplePanel} panel @param {Session} session @param {Page} page
+ * @param {{actions: Actions, perform: Perform, identity: IdentityActions} & Pick<Placing, "heads"|"guard">} parts
+ */
 function addForWork(panel, session, page, { actions, perform, identity, heads, guard }) {
   const list = warn(session, { ...page, actions, identity });
   panel.element.append(
@@ -98,7 +130,10 @@ function addForWork(panel, session, page, { actions, perform, identity, heads, g
   actions.use(frameHistory(panel, { ...session, ...page, guard }));
 }
 
-/** What keys, buttons and the pointer do. Going one by one means something else by some of the keys, so it comes last. */
+/**
+ * What keys, buttons and the pointer do. Going one by one means something else by some of the keys, so it comes last.
+ * @param {Actions} actions @param {Session} session @param {Page} page @param {Parts} parts
+ */
 function fillTable(actions, session, page, parts) {
   const { panes } = page;
   const intents = new AnnotatingIntents({ ...session, ...parts, enlarge: (pane) => parts.views.enlarge(pane) });
@@ -111,6 +146,10 @@ function fillTable(actions, session, page, parts) {
   actions.use(new OneByOne({ ...session, ...page, ...parts, intents, people, otherwise: () => keys.escape() }).table());
 }
 
+/**
+ * @param {PeoplePanel} panel
+ * @param {Session & {panes: Panes, navigation: Navigation, home: string}} parts
+ */
 async function startTutorial(panel, parts) {
   const { Tutorial } = await import("./tutorial/tutorial.js"); // without it the page is not started: main.js says so
   const tutorial = new Tutorial(parts);
@@ -118,9 +157,14 @@ async function startTutorial(panel, parts) {
   tutorial.start();
 }
 
-/** A strip that does not arrive is switched off, so that the next press tries again. */
+/**
+ * A strip that does not arrive is switched off, so that the next press tries again.
+ * @param {Timeline} timeline @param {Notices} notices
+ * @param {Session & Pick<Page, "navigation"|"panes"|"settings">} parts
+ */
 function showFilmstrip(timeline, notices, parts) {
   const { settings } = parts;
+  /** @param {typeof import("./frames/filmstrip.js")} module */
   const make = ({ Filmstrip }) => {
     const filmstrip = new Filmstrip(parts);
     timeline.element.before(filmstrip.element);
@@ -132,8 +176,12 @@ function showFilmstrip(timeline, notices, parts) {
   });
 }
 
-/** Rows for the table of actions. */
+/**
+ * Rows for the table of actions.
+ * @param {PeoplePanel} panel @param {Session & Page & Pick<Placing, "guard">} parts @returns {ActionTable}
+ */
 function frameHistory(panel, parts) {
+  /** @param {typeof import("./frames/frame_history.js")} module */
   const make = ({ FrameHistory }) => {
     const made = new FrameHistory(parts);
     panel.element.append(made.element);
@@ -143,7 +191,11 @@ function frameHistory(panel, parts) {
   return { history: async () => (await history())?.toggle() };
 }
 
-/** F6 gives Tab, Space and Enter to the buttons; Escape takes them back. @returns {(on: boolean) => void} does so */
+/**
+ * F6 gives Tab, Space and Enter to the buttons; Escape takes them back.
+ * @param {Bar} bar @param {Perform} perform @param {Settings} settings
+ * @returns {(on: boolean) => void} does so
+ */
 function connectKeyboard(bar, perform, settings) {
   const keyboard = new Keyboard(perform, (controls) => bar.showMode(controls));
   settings.watch("keys", (keys) => {
@@ -153,13 +205,18 @@ function connectKeyboard(bar, perform, settings) {
   });
   return (on) => {
     keyboard.setControls(on);
-    if (on) bar.element.querySelector("a, button").focus();
-    else document.activeElement?.blur();
+    if (on) bar.takeFocus();
+    else if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
   };
 }
 
-/** What is seen and how, as it was chosen last. @returns {object} rows for the table of actions */
+/**
+ * What is seen and how, as it was chosen last.
+ * @param {HTMLElement} root @param {Views} views @param {Page} page
+ * @returns {ActionTable} rows for the table of actions
+ */
 function chooseViews(root, views, { panes, settings, notices }) {
+  /** @param {typeof import("../views/views_menu.js")} module */
   const make = ({ ViewsMenu }) => {
     const made = new ViewsMenu(views);
     root.append(made.element);
@@ -170,7 +227,10 @@ function chooseViews(root, views, { panes, settings, notices }) {
   return { ...views.table(), views: async () => (await menu())?.toggle() };
 }
 
-/** @returns {HTMLElement} the list of warnings; the same warnings are drawn in the panes */
+/**
+ * @param {Session} session @param {Page & {actions: Actions, identity: IdentityActions}} parts
+ * @returns {HTMLElement} the list of warnings; the same warnings are drawn in the panes
+ */
 function warn(session, { settings, panes, notices, navigation, actions, identity }) {
   const { store } = session;
   const warnings = new Warnings(session);
@@ -182,7 +242,10 @@ function warn(session, { settings, panes, notices, navigation, actions, identity
     .element;
 }
 
-/** Things that happen outside the page's own controls. */
+/**
+ * Things that happen outside the page's own controls.
+ * @param {Session} session @param {Panes} panes @param {Notices} notices
+ */
 function watch(session, panes, notices) {
   const { saver, store, journal, images, activity } = session;
   const askAgain = askAboutConflicts(session, notices);
@@ -208,23 +271,35 @@ function watch(session, panes, notices) {
   document.documentElement.addEventListener("themechange", () => panes.set("mapColours", mapColours()));
 }
 
-/** One question after the other. @returns {() => void} asks those again that could not be asked */
+/**
+ * One question after the other.
+ * @param {Session} session @param {Notices} notices
+ * @returns {() => void} asks those again that could not be asked
+ */
 function askAboutConflicts({ saver, scene, store }, notices) {
+  /** @typedef {ReturnType<typeof saver.conflicts>[number]} Question */
+  /** @type {() => Promise<typeof import("../saving/conflicts.js")|null>} */
   const conflicts = fetched(notices, import.meta.resolve("../saving/conflicts.js"));
+  /** @type {Question[]} */
   const waiting = [];
   let asking = Promise.resolve();
+  /** @param {Question} conflict */
   const ask = async (conflict) => {
     const dialog = await conflicts();
     if (dialog) saver.resolve(conflict.frame, await dialog.askAboutConflicts(scene, store, conflict));
     else waiting.push(conflict);
   };
+  /** @param {Question} conflict */
   const askInTurn = (conflict) => (asking = asking.then(() => ask(conflict)));
   saver.conflicts().forEach(askInTurn);
   saver.on("conflict", askInTurn);
   return () => waiting.splice(0).forEach(askInTurn);
 }
 
-/** Where signing in again leads back to: staff log in, workers have their own page. */
+/**
+ * Where signing in again leads back to: staff log in, workers have their own page.
+ * @param {string} mode @param {string} home
+ */
 function signInAddress(mode, home) {
   return mode === "layer" ? `${document.body.dataset.login}?next=${encodeURIComponent(home)}` : home;
 }

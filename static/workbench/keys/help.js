@@ -3,7 +3,10 @@ import { element } from "../../base/dom.js";
 import { gettext } from "../../base/messages.js";
 import { KeySheet } from "./key_sheet.js";
 
-/** The key sheet, made from the key table; keys are changed in it. */
+/**
+ * The key sheet, made from the key table; keys are changed in it.
+ * @param {import("../settings.js").Settings} settings
+ */
 export function showHelp(settings) {
   const keys = new KeySheet(settings);
   const mouse = element(
@@ -24,10 +27,12 @@ export function showHelp(settings) {
   });
 }
 
+/** @param {HTMLElement[]} keys @param {string} label */
 function row(keys, label) {
   return [element("dt", {}, keys), element("dd", {}, label)];
 }
 
+/** @returns {[what: string, label: string][]} */
 function mouseRows() {
   return [
     [gettext("Click on feet"), gettext("a new person there, in all views at once")],

@@ -4,13 +4,20 @@ import { chord } from "../../base/key_press.js";
 import { gettext } from "../../base/messages.js";
 import { clash, groupTitle, keyName, keyTable } from "./keys.js";
 
+/**
+ * @typedef {import("./keys.js").KeyRow} KeyRow
+ * @typedef {{row: KeyRow, key: string|null, button: HTMLElement}} Waiting `key`: the one to be replaced, if it has any
+ */
+
 const MODIFIERS = ["Shift", "Control", "Alt", "Meta", "AltGraph"];
 
 /** All keys, group by group. A key that is clicked waits for the one that is to take its place. */
 export class KeySheet {
+  /** @param {import("../settings.js").Settings} settings */
   constructor(settings) {
     this._settings = settings;
-    this._waiting = null; // {row, key, button}
+    /** @type {Waiting|null} */
+    this._waiting = null;
     this.message = element("p", { className: "key-message", role: "status" });
     this.element = element("div", { className: "key-groups" });
     this.reset = element(
@@ -19,7 +26,7 @@ export class KeySheet {
       gettext("All keys as they were at first"),
     );
     this._build();
-    this.element.addEventListener("keydown", (event) => this._onKey(event));
+    this.element.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => this._onKey(event));
     this.element.addEventListener("focusout", () => this._stopWaiting());
     this._explain();
   }
@@ -42,16 +49,17 @@ export class KeySheet {
     );
   }
 
+  /** @param {KeyRow} row */
   _row(row) {
     const keys = row.keys.map((key) => (row.fixed ? element("kbd", {}, keyName(key)) : this._keyButton(row, key)));
     const nothing = row.keys.length ? [] : [this._keyButton(row, null)];
     return [element("dt", {}, keys, nothing), element("dd", {}, row.label)];
   }
 
-  /** @param {string|null} key null: it has none, as somebody else has taken it */
+  /** @param {KeyRow} row @param {string|null} key null: it has none, as somebody else has taken it */
   _keyButton(row, key) {
     const name = key === null ? gettext("no key") : keyName(key);
-    return element(
+    const button = element(
       "button",
       {
         type: "button",
@@ -59,15 +67,18 @@ export class KeySheet {
         "data-key-of": row.id,
         title: gettext("Change this key"),
         "aria-label": gettext("{key}: {what}. Change", { key: name, what: row.label }),
-        onclick: ({ currentTarget }) => this._wait(row, key, currentTarget),
       },
       element("kbd", {}, name),
     );
+    button.addEventListener("click", () => this._wait({ row, key, button }));
+    return button;
   }
 
-  _wait(row, key, button) {
+  /** @param {Waiting} waiting */
+  _wait(waiting) {
+    const { row, button } = waiting;
     this._stopWaiting();
-    this._waiting = { row, key, button };
+    this._waiting = waiting;
     button.classList.add("waiting");
     button.focus();
     setText(this.message, gettext("Press the new key for “{what}”; Esc leaves it as it is", { what: row.label }));
@@ -78,6 +89,7 @@ export class KeySheet {
     this._waiting = null;
   }
 
+  /** @param {KeyboardEvent} event */
   _onKey(event) {
     if (!this._waiting || MODIFIERS.includes(event.key)) return;
     event.preventDefault();
@@ -86,12 +98,14 @@ export class KeySheet {
       this._stopWaiting();
       return this._explain();
     }
-    this._take(chord(event));
+    this._take(this._waiting, chord(event));
   }
 
-  /** A key that means something else already is refused, and one can press another at once. */
-  _take(pressed) {
-    const { row, key } = this._waiting;
+  /**
+   * A key that means something else already is refused, and one can press another at once.
+   * @param {Waiting} waiting @param {string} pressed
+   */
+  _take({ row, key }, pressed) {
     const other = clash(row.id, pressed);
     if (other)
       return setText(
@@ -105,8 +119,13 @@ export class KeySheet {
       [row.id]: [...new Set(kept.length ? kept : [pressed])],
     });
     this._build();
-    this.element.querySelector(`[data-key-of="${row.id}"]`).focus();
+    this._buttonOf(row.id)?.focus();
     setText(this.message, gettext("{key} now means: {what}", { key: keyName(pressed), what: row.label }));
+  }
+
+  /** @param {string} id @returns {HTMLElement|null} */
+  _buttonOf(id) {
+    return this.element.querySelector(`[data-key-of="${id}"]`);
   }
 
   _reset() {

@@ -1,6 +1,11 @@
 import { titleFor } from "./keys.js";
 
-/** Tooltips of buttons say which key does the same. */
+/**
+ * Tooltips of buttons say which key does the same.
+ * @param {ParentNode} root
+ */
 export function nameKeys(root) {
-  for (const button of root.querySelectorAll("[data-action]")) button.title = titleFor(button.dataset.action);
+  /** @type {NodeListOf<HTMLElement>} */
+  const buttons = root.querySelectorAll("[data-action]");
+  for (const button of buttons) button.title = titleFor(button.dataset.action ?? "");
 }

@@ -1,9 +1,12 @@
 /**
  * The one table of keys: the keyboard, the help sheet and the tooltips are made from it. `keys` are chords as
  * `chord()` of key_press.js writes them. `labels` are texts for translation. An annotator may have chosen other keys.
+ * @typedef {"person"|"people"|"identity"|"frame"|"view"|"other"} Group
+ * @typedef {{id: string, group: Group, keys: string[], label: string, fixed: boolean}} KeyRow `fixed`: it cannot be changed
  */
 import { gettext } from "../../base/messages.js";
 
+/** @type {Record<Group, () => string>} */
 const GROUPS = {
   person: () => gettext("The selected person"),
   people: () => gettext("Choosing people"),
@@ -13,6 +16,7 @@ const GROUPS = {
   other: () => gettext("Everything else"),
 };
 
+/** @type {[id: string, group: Group, keys: string[], label: () => string][]} */
 const TABLE = [
   ["left", "person", ["ArrowLeft"], () => gettext("one position to the left, as the active view shows it")],
   ["right", "person", ["ArrowRight"], () => gettext("one position to the right")],
@@ -86,11 +90,13 @@ const TABLE = [
 /** Who counts on finding them: the way out, and digits that mean views. */
 const FIXED = ["toggleView", "controls", "escape"];
 
+/** @type {Record<string, string[]>} */
 let chosen = {};
 
 /** @param {Record<string, string[]>} keys chords by id; whatever is not in it has the keys of the table */
 export function useKeys(keys) {
   const reserved = TABLE.filter(([id]) => FIXED.includes(id)).flatMap(([, , own]) => own);
+  /** @param {[id: string, own: unknown]} entry as it was stored, perhaps by hand */
   const fits = ([id, own]) =>
     !FIXED.includes(id) &&
     Array.isArray(own) &&
@@ -99,7 +105,7 @@ export function useKeys(keys) {
   chosen = Object.fromEntries(Object.entries(keys).filter(fits));
 }
 
-/** @returns {{id, group, keys: string[], label: string, fixed: boolean}[]} in the order of the help sheet */
+/** @returns {KeyRow[]} in the order of the help sheet */
 export function keyTable() {
   const taken = new Set(Object.values(chosen).flat());
   return TABLE.map(([id, group, keys, label]) => ({
@@ -111,29 +117,50 @@ export function keyTable() {
   }));
 }
 
-/** Who has that key already, other than `id`: a row of the table, or null. */
+/**
+ * Who has that key already, other than `id`: a row of the table, or null.
+ * @param {string} id @param {string} key
+ */
 export function clash(id, key) {
   return keyTable().find((row) => row.id !== id && row.keys.includes(key)) ?? null;
 }
 
-/** What to press for `id`, as it is printed on keys. */
+/** @param {string} id */
+function rowOf(id) {
+  const found = keyTable().find((row) => row.id === id);
+  if (!found) throw new RangeError(`unknown action ${id}`);
+  return found;
+}
+
+/**
+ * What to press for `id`, as it is printed on keys.
+ * @param {string} id
+ */
 export function keyFor(id) {
-  const [key] = keyTable().find((row) => row.id === id).keys;
+  const [key] = rowOf(id).keys;
   return key ? keyName(key) : gettext("no key");
 }
 
-/** Tooltip of a button that does the same as `id`: what it does, and the key. */
+/**
+ * Tooltip of a button that does the same as `id`: what it does, and the key.
+ * @param {string} id
+ */
 export function titleFor(id) {
-  const { keys, label } = keyTable().find((row) => row.id === id);
+  const { keys, label } = rowOf(id);
   return keys.length ? `${label} (${keyName(keys[0])})` : label;
 }
 
+/** @param {Group} group */
 export function groupTitle(group) {
   return GROUPS[group]();
 }
 
-/** A chord as it is printed on keys. */
+/**
+ * A chord as it is printed on keys.
+ * @param {string} text
+ */
 export function keyName(text) {
+  /** @type {Record<string, string>} */
   const names = { ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓", " ": gettext("Space"), Escape: "Esc" };
   return text
     .split("+")

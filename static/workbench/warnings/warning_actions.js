@@ -1,10 +1,26 @@
 import { gettext } from "../../base/messages.js";
 import { warningWords } from "./warning_words.js";
 
+/**
+ * @typedef {import("../../truth/plausibility.js").Warning} Warning
+ * @typedef {object} Parts
+ * @property {import("../../truth/store.js").Store} store
+ * @property {import("./warnings.js").Warnings} warnings
+ * @property {import("../frames/navigation.js").Navigation} navigation
+ * @property {import("../../base/notices.js").Notices} notices
+ * @property {import("../people/identity_actions.js").IdentityActions} identity
+ */
+
 /** Going from warning to warning, and doing something about them. */
 export class WarningActions {
+  /** @param {Parts} parts */
   constructor({ store, warnings, navigation, notices, identity }) {
-    Object.assign(this, { store, warnings, navigation, notices, identity });
+    this.store = store;
+    this.warnings = warnings;
+    this.navigation = navigation;
+    this.notices = notices;
+    this.identity = identity;
+    /** @type {Warning|null} */
     this._last = null;
   }
 
@@ -21,7 +37,10 @@ export class WarningActions {
     return this.go(at >= 0 ? list[(at + 1) % list.length] : list[Math.max(0, ahead)]);
   }
 
-  /** Without saying anything about the frame one leaves. */
+  /**
+   * Without saying anything about the frame one leaves.
+   * @param {Warning} warning
+   */
   async go(warning) {
     this._last = warning;
     if (warning.frame !== this.store.current) await this.navigation.look(warning.frame);
@@ -37,6 +56,7 @@ export class WarningActions {
     this.notices.say(gettext("Dismissed: {words}", { words: warningWords(warning) }));
   }
 
+  /** @param {Warning} warning */
   join({ persons: [person, other] }) {
     return this.identity.ask({ kind: "join", person, other });
   }

@@ -1,3 +1,8 @@
+/**
+ * @typedef {import("../../truth/plausibility.js").Warning} Warning
+ * @typedef {import("../../truth/plausibility.js").XY} XY
+ * @typedef {{number: number, time: number, people: import("../../truth/annotation.js").People}} Moment seconds, and who is where
+ */
 import { Emitter } from "../../base/emitter.js";
 import { findWarnings, inMiddle } from "../../truth/plausibility.js";
 
@@ -6,20 +11,31 @@ const CALM = 250; // ms after the last edit: a held key is not slowed down, and 
 /**
  * What is physically wrong in the frames that are loaded, apart from what the annotator has looked at and let
  * stand. It only tells; nothing is ever stopped by it. Emits `change`.
+ * @extends {Emitter<{change: void}>}
  */
 export class Warnings extends Emitter {
+  /** @param {Pick<import("../../saving/session.js").Session, "scene"|"store"|"journal">} session */
   constructor({ scene, store, journal }) {
     super();
-    Object.assign(this, { _scene: scene, _store: store, _journal: journal });
+    this._scene = scene;
+    this._store = store;
+    this._journal = journal;
+    /** @type {Warning[]} */
     this._all = [];
+    /** @type {Set<string>} */
     this._dismissed = new Set();
-    this._timer = null;
+    /** @type {ReturnType<typeof setTimeout>|undefined} */
+    this._timer = undefined;
+    /** @type {Warning[]} */
     this.list = [];
     store.on("change", () => this._later());
     this._start();
   }
 
-  /** Those of one frame. */
+  /**
+   * Those of one frame.
+   * @param {number} number
+   */
   of(number) {
     return this.list.filter(({ frame }) => frame === number);
   }
@@ -28,7 +44,10 @@ export class Warnings extends Emitter {
     return this._all.length - this.list.length;
   }
 
-  /** This case is right as it is. */
+  /**
+   * This case is right as it is.
+   * @param {Warning} warning
+   */
   dismiss({ key }) {
     this._dismissed.add(key);
     this._keep();
@@ -56,6 +75,7 @@ export class Warnings extends Emitter {
   }
 
   _find() {
+    /** @type {import("../../truth/plausibility.js").Ground} */
     const ground = {
       metres: (position) => this._scene.metres(position),
       inMiddle: (point) => inMiddle(point, (one) => this._isSeen(one)),
@@ -73,15 +93,18 @@ export class Warnings extends Emitter {
 
   /** Runs of frames that are loaded: across a gap nothing can be said. */
   _pieces() {
+    /** @type {Moment[][]} */
     const pieces = [[]];
     for (const number of this._store.numbers) {
       const { loaded, people } = this._store.frame(number);
-      if (loaded) pieces.at(-1).push({ number, time: this._scene.seconds(number), people });
-      else if (pieces.at(-1).length) pieces.push([]);
+      const piece = pieces[pieces.length - 1];
+      if (loaded) piece.push({ number, time: this._scene.seconds(number), people });
+      else if (piece.length) pieces.push([]);
     }
     return pieces;
   }
 
+  /** @param {XY} point */
   _isSeen(point) {
     if (this._scene.positionAt(point) === null) return false;
     return this._scene.cameras.some(({ width, height }, index) => {
