@@ -39,7 +39,6 @@ function toolButton(id, text, perform) {
       className: "quiet",
       "data-action": id,
       title: titleFor(id),
-      /** @param {MouseEvent} event */
       onclick: (event) => {
         if (event.detail > 0) button.blur(); // Space would press it again
         perform(id);

@@ -35,7 +35,6 @@ export class PeoplePanel {
       role: "listbox",
       tabIndex: 0,
       "aria-label": gettext("People in this frame"),
-      /** @param {KeyboardEvent} event */
       onkeydown: (event) => this._onKey(event),
     });
     this._empty = element("p", { className: "empty" }, gettext("Nobody yet. Click on somebody's feet in any view."));
@@ -97,7 +96,6 @@ export class PeoplePanel {
         role: "option",
         id: `person-${person}`,
         onclick: () => this._select(person),
-        /** @param {MouseEvent} event */
         onmousedown: (event) => event.preventDefault(),
       },
       element("span", { className: "number" }, String(person)),
