@@ -28,7 +28,7 @@ export class WhoIs {
     this._store = store;
     this._images = images;
     this._panes = panes;
-    panes.addExtra((pane) => this._items(pane));
+    panes.addExtra(/** @param {Pane} pane */ (pane) => this._items(pane));
     images.on("picture", () => this._shows && panes.markPeople());
     panes.markPeople();
   }

@@ -40,7 +40,7 @@ export class Dragging {
     this._sizes = sizes;
     /** @type {Drag|null} */
     this._drag = null;
-    panes.addExtra((pane) => this._items(pane));
+    panes.addExtra(/** @param {Pane} pane */ (pane) => this._items(pane));
     store.on(
       "change",
       () => this._drag && store.person(this._drag.person.person) !== this._drag.person && this.cancel(),

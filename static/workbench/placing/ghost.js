@@ -49,7 +49,7 @@ export class Ghost {
     this._heads = heads;
     /** @type {Shown|null} */
     this._shown = null;
-    panes.addExtra((pane) => this._items(pane));
+    panes.addExtra(/** @param {Pane} pane */ (pane) => this._items(pane));
     /** @type {DoubtPart["uncertaintyAt"]|null} fetched when the pointer comes first */
     this._doubtAt = null;
     /** @type {() => Promise<DoubtPart|null>} */

@@ -42,7 +42,7 @@ export class MultiViewClick {
     this._result = null;
     /** @type {ReturnType<typeof setTimeout>|undefined} */
     this._timer = undefined;
-    panes.addExtra((pane) => this._items(pane));
+    panes.addExtra(/** @param {Pane} pane */ (pane) => this._items(pane));
     store.on("change", () => this._result && !this._valid() && this._show(null));
     store.on("frame", () => this._show(null));
     store.on("selection", () => this._show(null));

@@ -78,7 +78,8 @@ export class Sizes {
    * @param {import("./guard.js").Where} [place]
    */
   refused(place = null) {
-    const unknown = this.scene.cameras.filter(({ byTable }) => byTable).map(({ name }) => name);
+    const unknown = [];
+    for (const { byTable, name } of this.scene.cameras) if (byTable) unknown.push(name);
     if (!unknown.length) return false;
     this.guard.say(
       place,
@@ -157,9 +158,15 @@ export function heightReaching(scene, view, person, top) {
 
 /** @param {Scene} scene @param {Size} name */
 function limitWords(scene, name) {
-  const [least, most] = scene.sizes[name].map((metres) => (name === "radius" ? 2 * metres : metres).toFixed(2));
-  if (name === "radius") return gettext("People are {least} to {most} m wide", { least, most });
-  return gettext("People are {least} to {most} m tall", { least, most });
+  const [least, most] = scene.sizes[name];
+  const words = { least: inWords(name, least), most: inWords(name, most) };
+  if (name === "radius") return gettext("People are {least} to {most} m wide", words);
+  return gettext("People are {least} to {most} m tall", words);
+}
+
+/** @param {Size} name @param {number} metres */
+function inWords(name, metres) {
+  return (name === "radius" ? 2 * metres : metres).toFixed(2);
 }
 
 /** @param {Scene} scene @param {Size} name @param {number} metres */
