@@ -3,10 +3,32 @@ import { gettext, ngettext } from "../../base/messages.js";
 import { loadMissing } from "../../saving/load_missing.js";
 import { keyFor } from "../keys/keys.js";
 
-/** What an annotator does about who is who. Every row shows what it will change, then runs one command. */
+/**
+ * What an annotator does about who is who. Every row shows what it will change, then runs one command.
+ * @typedef {import("../../truth/commands.js").Patch} Patch
+ * @typedef {import("../../truth/identity.js").Choice} Choice
+ * @typedef {typeof import("./identity_dialog.js")} DialogPart
+ */
 export class IdentityActions {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/scene.js").Scene} parts.scene
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../truth/history.js").History} parts.history
+   * @param {import("../../saving/loader.js").Loader} parts.loader
+   * @param {import("../../views/panes.js").Panes} parts.panes
+   * @param {import("../../base/notices.js").Notices} parts.notices
+   * @param {import("../placing/guard.js").Guard} parts.guard
+   */
   constructor({ scene, store, history, loader, panes, notices, guard }) {
-    Object.assign(this, { scene, store, history, loader, panes, notices, guard });
+    this.scene = scene;
+    this.store = store;
+    this.history = history;
+    this.loader = loader;
+    this.panes = panes;
+    this.notices = notices;
+    this.guard = guard;
+    /** @type {() => Promise<DialogPart|null>} */
     this._dialog = fetchedDialog(notices, import.meta.resolve("./identity_dialog.js"));
     this._asking = false;
   }
@@ -22,7 +44,7 @@ export class IdentityActions {
     };
   }
 
-  /** @param {Partial<import("../../truth/identity.js").Choice>} start; without a person: about the selected one */
+  /** @param {Partial<Choice> & Pick<Choice, "kind">} start without a person: about the selected one */
   async ask(start) {
     const person = start.person ?? this.guard.selected()?.person;
     if (person === undefined || this.guard.refused() || this._asking) return;
@@ -41,6 +63,7 @@ export class IdentityActions {
     }
   }
 
+  /** @param {Patch} patch */
   _run(patch) {
     this.history.run(patch);
     const frames = new Set(patch.edits.map(({ frame }) => frame)).size;

@@ -7,9 +7,24 @@ import { keyFor } from "../keys/keys.js";
  * Going round the yellow people one by one, close up: Enter for who stands right, one right click on the feet for
  * who does not, and the views show the next one. After the last one they show everything again, for people
  * without a box; whoever is placed then is shown close up, too.
+ * @typedef {typeof import("./whois.js")} WhoIsPart
  */
 export class OneByOne {
-  /** @param {{people: import("./people_actions.js").PeopleActions, otherwise: () => void}} parts what Escape does when not one by one */
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/scene.js").Scene} parts.scene
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../views/images.js").Images} parts.images
+   * @param {import("../../views/panes.js").Panes} parts.panes
+   * @param {import("../../base/notices.js").Notices} parts.notices
+   * @param {import("../frames/navigation.js").Navigation} parts.navigation
+   * @param {import("./queue.js").Queue} parts.queue
+   * @param {import("../placing/dragging.js").Dragging} parts.dragging
+   * @param {import("../placing/heads.js").Heads} parts.heads
+   * @param {import("../annotating_intents.js").AnnotatingIntents} parts.intents
+   * @param {import("./people_actions.js").PeopleActions} parts.people
+   * @param {() => void} parts.otherwise what Escape does when not one by one
+   */
   constructor({
     scene,
     store,
@@ -24,16 +39,26 @@ export class OneByOne {
     people,
     otherwise,
   }) {
-    Object.assign(this, { _store: store, _panes: panes, _notices: notices, _navigation: navigation, _queue: queue });
-    Object.assign(this, { _dragging: dragging, _heads: heads, _people: people, _otherwise: otherwise });
-    this._passed = []; // people gone past in this frame, newest last
+    this._store = store;
+    this._panes = panes;
+    this._notices = notices;
+    this._navigation = navigation;
+    this._queue = queue;
+    this._dragging = dragging;
+    this._heads = heads;
+    this._people = people;
+    this._otherwise = otherwise;
+    /** @type {number[]} people gone past in this frame, newest last */
+    this._passed = [];
     store.on("frame", () => (this._passed = []));
     store.on("selection", ({ after }) => this.on && after !== null && !panes.zoomed && panes.zoom(true));
     intents.on("moved", () => this.on && this._advance());
+    /** @param {WhoIsPart} part */
     const make = ({ WhoIs }) => new WhoIs({ scene, store, images, panes });
     this._showWho = fetched(notices, import.meta.resolve("./whois.js"), make);
   }
 
+  /** @returns {boolean} */
   get on() {
     return this._panes.closeUp;
   }

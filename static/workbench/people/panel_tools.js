@@ -2,6 +2,7 @@ import { element } from "../../base/dom.js";
 import { gettext } from "../../base/messages.js";
 import { titleFor } from "../keys/keys.js";
 
+/** @type {[string, () => string][]} ids of the key table, and what the buttons say */
 const ABOUT_PERSON = [
   ["rename", () => gettext("Rename")],
   ["split", () => gettext("Split")],
@@ -10,29 +11,40 @@ const ABOUT_PERSON = [
   ["removeMore", () => gettext("Remove")],
 ];
 
-/** Buttons under the list of people, for mouse and touch: who is who, clicks on heads, the frame's history. */
+/**
+ * Buttons under the list of people, for mouse and touch: who is who, clicks on heads, the frame's history.
+ * @param {import("../../truth/store.js").Store} store
+ * @param {(id: string) => void} perform by the ids of the key table
+ * @param {import("../placing/heads.js").Heads} heads
+ */
 export function panelTools(store, perform, heads) {
-  const button = (id, text) =>
-    element(
-      "button",
-      {
-        type: "button",
-        className: "quiet",
-        "data-action": id,
-        title: titleFor(id),
-        onclick: (event) => {
-          if (event.detail > 0) event.currentTarget.blur(); // Space would press it again
-          perform(id);
-        },
-      },
-      text,
-    );
-  const person = ABOUT_PERSON.map(([id, text]) => button(id, text()));
+  const person = ABOUT_PERSON.map(([id, text]) => toolButton(id, text(), perform));
   const update = () => person.forEach((one) => (one.disabled = store.selection === null));
   store.on("selection", update);
   update();
-  const byHead = button("heads", gettext("Heads"));
+  const byHead = toolButton("heads", gettext("Heads"), perform);
   byHead.setAttribute("aria-pressed", "false");
   heads.on("change", ({ on }) => byHead.setAttribute("aria-pressed", String(on)));
-  return element("div", { className: "panel-tools" }, person, byHead, button("history", gettext("History")));
+  const history = toolButton("history", gettext("History"), perform);
+  return element("div", { className: "panel-tools" }, person, byHead, history);
+}
+
+/** @param {string} id @param {string} text @param {(id: string) => void} perform */
+function toolButton(id, text, perform) {
+  /** @type {HTMLButtonElement} */
+  const button = element(
+    "button",
+    {
+      type: "button",
+      className: "quiet",
+      "data-action": id,
+      title: titleFor(id),
+      onclick: (event) => {
+        if (event.detail > 0) button.blur(); // Space would press it again
+        perform(id);
+      },
+    },
+    text,
+  );
+  return button;
 }

@@ -5,16 +5,22 @@ import { keyFor } from "../keys/keys.js";
 
 /** Choosing, validating and removing people of the open frame. Every refusal says why, where the annotator looks. */
 export class PeopleActions {
-  /** @param {{select: (person: number) => void}} parts */
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../truth/history.js").History} parts.history
+   * @param {import("../placing/guard.js").Guard} parts.guard
+   * @param {import("../../base/notices.js").Notices} parts.notices
+   * @param {import("./queue.js").Queue} parts.queue
+   * @param {(person: number) => void} parts.select
+   */
   constructor({ store, history, guard, notices, queue, select }) {
-    Object.assign(this, {
-      _store: store,
-      _history: history,
-      _guard: guard,
-      _notices: notices,
-      _queue: queue,
-      _select: select,
-    });
+    this._store = store;
+    this._history = history;
+    this._guard = guard;
+    this._notices = notices;
+    this._queue = queue;
+    this._select = select;
   }
 
   /** Rows for the table of actions, by the ids of the key table. */
@@ -63,6 +69,7 @@ export class PeopleActions {
     this._select(next.person);
   }
 
+  /** @param {1|-1} offset */
   _selectNeighbour(offset) {
     const people = asList(this._store.people());
     if (!people.length)

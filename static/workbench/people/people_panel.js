@@ -3,11 +3,32 @@ import { gettext, ngettext } from "../../base/messages.js";
 import { paintSoon } from "../../base/repaint.js";
 import { asList } from "../../truth/annotation.js";
 
-/** The list of people in the frame: number, state in words, in how many views they are seen. */
+/** @type {Record<string, 1|-1|undefined>} */
+const STEPS = { ArrowUp: -1, ArrowDown: 1 };
+
+/**
+ * The list of people in the frame: number, state in words, in how many views they are seen.
+ * @typedef {import("../../truth/annotation.js").Annotation} Annotation
+ * @typedef {object} Row
+ * @property {HTMLElement} node
+ * @property {HTMLElement} state
+ * @property {HTMLElement} size
+ * @property {HTMLElement} views
+ * @property {Annotation|null} shown what it says now
+ * @property {boolean|null} selected
+ */
 export class PeoplePanel {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/scene.js").Scene} parts.scene
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {(person: number) => void} parts.select
+   */
   constructor({ scene, store, select }) {
-    Object.assign(this, { scene, store });
+    this.scene = scene;
+    this.store = store;
     this._select = select;
+    /** @type {Map<number, Row>} */
     this._rows = new Map();
     this._list = element("ul", {
       className: "people",
@@ -20,7 +41,7 @@ export class PeoplePanel {
     this._title = element("h2", {}, gettext("People"));
     this._details = element("p", { className: "details" });
     this.element = element("aside", { className: "panel" }, this._title, this._empty, this._list, this._details);
-    for (const event of ["change", "selection", "frame"]) store.on(event, () => paintSoon(this));
+    for (const event of /** @type {const} */ (["change", "selection", "frame"])) store.on(event, () => paintSoon(this));
     this.paint();
   }
 
@@ -32,31 +53,39 @@ export class PeoplePanel {
     const gone = new Set(this._rows.keys());
     people.forEach((one, index) => {
       gone.delete(one.person);
-      this._place(this._rowOf(one.person), index);
-      this._refresh(this._rows.get(one.person), one, one.person === selection);
+      const row = this._rowOf(one.person);
+      this._place(row.node, index);
+      this._refresh(row, one, one.person === selection);
     });
     for (const person of gone) {
-      this._rows.get(person).node.remove();
+      this._rows.get(person)?.node.remove();
       this._rows.delete(person);
     }
     this._describe();
   }
 
-  /** With the focus on the list (by Tab; a click leaves it where it was), Up and Down choose people. */
+  /**
+   * With the focus on the list (by Tab; a click leaves it where it was), Up and Down choose people.
+   * @param {KeyboardEvent} event
+   */
   _onKey(event) {
-    const step = { ArrowUp: -1, ArrowDown: 1 }[event.key];
+    const step = STEPS[event.key];
     const people = asList(this.store.people());
     if (!step || !people.length || event.shiftKey) return;
     event.preventDefault();
     const index = people.findIndex(({ person }) => person === this.store.selection);
-    this._select(people.at((Math.max(index, step > 0 ? -1 : 0) + step) % people.length).person);
+    const next = people.at((Math.max(index, step > 0 ? -1 : 0) + step) % people.length);
+    if (next) this._select(next.person);
   }
 
+  /** @param {number} person */
   _rowOf(person) {
-    if (!this._rows.has(person)) this._rows.set(person, this._makeRow(person));
-    return this._rows.get(person).node;
+    const row = this._rows.get(person) ?? this._makeRow(person);
+    this._rows.set(person, row);
+    return row;
   }
 
+  /** @param {number} person @returns {Row} */
   _makeRow(person) {
     const state = element("span", { className: "state" });
     const size = element("span", { className: "size", title: gettext("own height") });
@@ -77,10 +106,12 @@ export class PeoplePanel {
     return { node, state, size, views, shown: null, selected: null };
   }
 
+  /** @param {HTMLElement} node @param {number} index */
   _place(node, index) {
     if (this._list.children[index] !== node) this._list.insertBefore(node, this._list.children[index] ?? null);
   }
 
+  /** @param {Row} row @param {Annotation} one @param {boolean} selected */
   _refresh(row, one, selected) {
     if (row.shown !== one) {
       row.shown = one;

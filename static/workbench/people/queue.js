@@ -3,17 +3,25 @@ import { CARRIED } from "../../truth/annotation.js";
 /**
  * The order in which the people of the open frame come: from the smallest number on, always the nearest next, so
  * that eyes and pointer travel little. Whoever has a place in it keeps it as long as the frame is open.
+ * @typedef {import("../../truth/annotation.js").Annotation} Annotation
  */
 export class Queue {
+  /** @param {{scene: import("../../truth/scene.js").Scene, store: import("../../truth/store.js").Store}} parts */
   constructor({ scene, store }) {
-    Object.assign(this, { _scene: scene, _store: store, _order: [] });
+    this._scene = scene;
+    this._store = store;
+    /** @type {number[]} */
+    this._order = [];
     store.on("frame", () => (this._order = []));
   }
 
-  /** The next yellow person after `person`, or from the beginning (null); undefined when nobody is yellow. */
+  /**
+   * The next yellow person after `person`, or from the beginning (null); undefined when nobody is yellow.
+   * @param {number|null} person @returns {Annotation|undefined}
+   */
   next(person) {
     this._extend();
-    const start = this._order.indexOf(person) + 1;
+    const start = person === null ? 0 : this._order.indexOf(person) + 1;
     const inTurn = [...this._order.slice(start), ...this._order.slice(0, start)];
     return inTurn.map((one) => this._store.person(one)).find((one) => one?.state === CARRIED);
   }
@@ -30,12 +38,14 @@ export class Queue {
     }
   }
 
+  /** @param {number[]} persons */
   _nearest(persons) {
     const last = this._order.map((one) => this._store.person(one)).findLast(Boolean);
     if (!last) return persons[0];
     const from = this._scene.metres(last.position);
+    /** @param {number} one */
     const away = (one) => {
-      const { x, y } = this._scene.metres(this._store.person(one).position);
+      const { x, y } = this._scene.metres(this._store.marked(one).position);
       return Math.hypot(x - from.x, y - from.y);
     };
     return persons.reduce((best, one) => (away(one) < away(best) ? one : best));

@@ -10,33 +10,55 @@ const EDGE = 6;
 /**
  * Close up one sees legs. In a corner of every view stands whom they belong to: the whole person where they were
  * validated last, the whole person here, and the number.
+ * @typedef {import("../../truth/annotation.js").Annotation} Annotation
+ * @typedef {import("../../views/pane.js").Pane} Pane
+ * @typedef {{number: number, one: Annotation}} Seen somebody in a frame
+ * @typedef {{x: number, y: number, width: number, height: number, view: number, picture: ImageBitmap|null}} Cell
  */
 export class WhoIs {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/scene.js").Scene} parts.scene
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../views/images.js").Images} parts.images
+   * @param {import("../../views/panes.js").Panes} parts.panes
+   */
   constructor({ scene, store, images, panes }) {
-    Object.assign(this, { _scene: scene, _store: store, _images: images, _panes: panes });
-    panes.addExtra((pane) => this._items(pane));
+    this._scene = scene;
+    this._store = store;
+    this._images = images;
+    this._panes = panes;
+    panes.addExtra(/** @param {Pane} pane */ (pane) => this._items(pane));
     images.on("picture", () => this._shows && panes.markPeople());
     panes.markPeople();
   }
 
   get _shows() {
-    return this._panes.closeUp && this._panes.zoomed && this._store.selected() !== undefined;
+    return this._whom !== null;
   }
 
+  /** Who is selected, close up. */
+  get _whom() {
+    return this._panes.closeUp && this._panes.zoomed ? (this._store.selected() ?? null) : null;
+  }
+
+  /** @param {Pane} pane */
   _items(pane) {
-    if (!this._shows || pane.view.index === null || !pane.view.box(this._store.selected())) return [];
-    const shown = [this._lastSeen(), { number: this._store.current, one: this._store.selected() }].filter(Boolean);
+    const [whom, { index }] = [this._whom, pane.view];
+    if (!whom || index === null || !pane.view.box(whom)) return [];
+    const before = this._lastSeen(whom.person);
+    const shown = [...(before ? [before] : []), { number: this._store.current, one: whom }];
     const height = Math.min(TALLEST, SHARE * pane.room.height);
     const width = SLIM * height;
     const left = pane.room.width - EDGE - shown.length * width;
-    const cells = shown.map(({ number, one }, index) => ({
+    const cells = shown.map(({ number, one }, place) => ({
       cell: {
-        x: left + index * width,
+        x: left + place * width,
         y: EDGE,
         width: width - 2,
         height,
-        view: pane.view.index,
-        picture: this._picture(number, pane.view.index),
+        view: index,
+        picture: this._picture(number, index),
       },
       one,
     }));
@@ -44,14 +66,19 @@ export class WhoIs {
     return [
       {
         id: "whois",
-        what: this._store.selected(),
+        what: whom,
         look: `${shown.map(({ number }) => number)} ${pictures} ${Math.round(left)} ${Math.round(height)}`,
         bounds: { xmin: left - 2, ymin: EDGE - 2, xmax: pane.room.width, ymax: EDGE + height + 2 },
+        /** @param {CanvasRenderingContext2D} ctx */
         draw: (ctx) => this._draw(ctx, cells, left, pane.room.width - EDGE - left, height),
       },
     ];
   }
 
+  /**
+   * @param {CanvasRenderingContext2D} ctx @param {{cell: Cell, one: Annotation}[]} cells
+   * @param {number} left @param {number} width @param {number} height
+   */
   _draw(ctx, cells, left, width, height) {
     ctx.fillStyle = HALO;
     ctx.fillRect(left - 2, EDGE - 2, width + 2, height + 4);
@@ -66,15 +93,20 @@ export class WhoIs {
     ctx.fillText(number, left + 4, EDGE + 9.5);
   }
 
-  /** The nearest frame, earlier ones first, in which somebody has looked at the person. */
-  _lastSeen() {
-    const { numbers, current, selection } = this._store;
+  /**
+   * The nearest frame, earlier ones first, in which somebody has looked at the person.
+   * @param {number} person @returns {Seen|null}
+   */
+  _lastSeen(person) {
+    const { numbers, current } = this._store;
     const index = numbers.indexOf(current);
-    const known = (number) => this._store.person(selection, number)?.state === VALIDATED;
+    /** @param {number} number */
+    const known = (number) => this._store.person(person, number)?.state === VALIDATED;
     const number = numbers.slice(0, index).findLast(known) ?? numbers.slice(index + 1).find(known);
-    return number === undefined ? null : { number, one: this._store.person(selection, number) };
+    return number === undefined ? null : { number, one: this._store.marked(person, number) };
   }
 
+  /** @param {number} number @param {number} view @returns {ImageBitmap|null} */
   _picture(number, view) {
     return this._images.peek(number, view, "full") ?? this._images.get(number, view, "light").bitmap;
   }

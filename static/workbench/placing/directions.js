@@ -2,16 +2,29 @@
  * Where the arrow keys lead. What Left means depends on the view the annotator looks at: it is the grid
  * direction that comes closest to Left on the screen there, unless the settings say "the axes of the ground". A
  * held key goes on as it began. The helper draws exactly what the keys do.
+ * @typedef {import("../../geometry/directions.js").Step} Step
+ * @typedef {import("../../truth/annotation.js").Annotation} Annotation
+ * @typedef {import("../../truth/ground_point.js").XY} XY
+ * @typedef {import("../../views/pane.js").Pane} Pane
+ * @typedef {import("../../views/panes.js").Panes} Panes
+ * @typedef {"left"|"right"|"up"|"down"} Direction
+ * @typedef {Record<Direction, Step>} Steps what each arrow key does
  */
 
 import { drawArrow } from "../../views/marks.js";
 import { YELLOW } from "../../views/styles.js";
 
+/** @type {readonly Direction[]} */
+export const DIRECTIONS = ["left", "right", "up", "down"];
+/** @type {Record<Direction, string>} */
 const SIGNS = { left: "←", right: "→", up: "↑", down: "↓" };
 const LENGTH = 34; // CSS pixels
 const REACH = 0.5; // metres along the ground from which an arrow's direction is taken
 
-/** The grid's own directions: for views that cannot tell (behind the camera), and for whoever prefers them. */
+/**
+ * The grid's own directions: for views that cannot tell (behind the camera), and for whoever prefers them.
+ * @type {Steps}
+ */
 const GROUND = {
   left: { columns: -1, rows: 0 },
   right: { columns: 1, rows: 0 },
@@ -20,12 +33,22 @@ const GROUND = {
 };
 
 export class Arrows {
-  /** @param {{held: import("../keys/key_repeat.js").KeyRepeat}} parts */
+  /**
+   * @param {object} parts
+   * @param {Panes} parts.panes
+   * @param {import("../settings.js").Settings} parts.settings
+   * @param {import("../keys/key_repeat.js").KeyRepeat} parts.held
+   */
   constructor({ panes, settings, held }) {
-    Object.assign(this, { _panes: panes, _settings: settings, _held: held });
+    this._panes = panes;
+    this._settings = settings;
+    this._held = held;
   }
 
-  /** What each arrow key does to `annotation`: {left: {columns, rows}, right, up, down}. */
+  /**
+   * What each arrow key does to `annotation`.
+   * @param {Annotation} annotation @returns {Steps}
+   */
   steps(annotation) {
     if (this._held.steps) return this._held.steps;
     if (this._settings.get("arrowAxes") === "ground") return GROUND;
@@ -34,9 +57,13 @@ export class Arrows {
   }
 }
 
-/** Items for `Panes.addExtra`. */
+/**
+ * Items for `Panes.addExtra`.
+ * @param {Panes} panes @param {Arrows} arrows @param {Pane} pane
+ */
 export function directionItems(panes, arrows, pane) {
-  const person = panes.people().get(panes.store.selection);
+  const { selection } = panes.store;
+  const person = selection === null ? undefined : panes.people().get(selection);
   if (!panes.options.directions || !person || !pane.view.box(person)) return [];
   const steps = arrows.steps(person);
   const from = onPane(pane, panes.scene.metres(person.position));
@@ -48,13 +75,18 @@ export function directionItems(panes, arrows, pane) {
       what: person,
       look: JSON.stringify(steps),
       bounds: { xmin: from.x - room, ymin: from.y - room, xmax: from.x + room, ymax: from.y + room },
+      /** @param {CanvasRenderingContext2D} ctx */
       draw: (ctx) => {
-        for (const [name, step] of Object.entries(steps)) drawStep(ctx, panes, pane, person, from, name, step);
+        for (const name of DIRECTIONS) drawStep(ctx, panes, pane, person, from, name, steps[name]);
       },
     },
   ];
 }
 
+/**
+ * @param {CanvasRenderingContext2D} ctx @param {Panes} panes @param {Pane} pane @param {Annotation} person
+ * @param {XY} from CSS pixels of the pane @param {Direction} name @param {Step} step
+ */
 function drawStep(ctx, panes, pane, person, from, name, { columns, rows }) {
   const { x, y } = panes.scene.metres(person.position);
   const to = onPane(pane, { x: x + columns * REACH, y: y + rows * REACH });
@@ -66,7 +98,8 @@ function drawStep(ctx, panes, pane, person, from, name, { columns, rows }) {
   drawArrow(ctx, start, { x: from.x + LENGTH * dx, y: from.y + LENGTH * dy }, YELLOW, SIGNS[name]);
 }
 
+/** @param {Pane} pane @param {XY} ground metres @returns {XY|null} CSS pixels of the pane */
 function onPane(pane, ground) {
   const point = pane.view.point(ground);
-  return point && pane.transform.toPane(point.x, point.y);
+  return point && pane.transform ? pane.transform.toPane(point.x, point.y) : null;
 }

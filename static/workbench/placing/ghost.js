@@ -7,25 +7,52 @@ import { crossItem, lineItem, readoutItem } from "../../views/hints_on_ground.js
 import { CYAN, LOOKS } from "../../views/styles.js";
 
 const AGAIN = 10_000; // ms until a part that did not arrive is asked for again
+const NOBODY = -1; // the number of somebody new, who has none yet
 const SILENT = { say() {} }; // a pointer that moves asks for nothing, so nobody is told what did not arrive
 
 /**
  * What a click would place, before anything is placed: the cylinder in every view, the line on the ground
  * along which the view's ray runs, the position in metres, and what speaks against it.
+ * @typedef {import("../../truth/annotation.js").Annotation} Annotation
+ * @typedef {import("../../truth/ground_point.js").GroundPoint} GroundPoint
+ * @typedef {import("../../truth/ground_point.js").XY} XY
+ * @typedef {import("../../views/pane.js").Pane} Pane
+ * @typedef {import("../../views/transform.js").Transform} Transform
+ * @typedef {(typeof LOOKS)[keyof typeof LOOKS]} Look
+ * @typedef {typeof import("../../truth/uncertainty.js")} DoubtPart
+ * @typedef {{metres: number, settles: Pane|null}} Doubt
+ * @typedef {{annotation: Annotation|null, look: Look}} Figure null: there is no place for one
+ * @typedef {object} Hovered
+ * @property {Pane} pane
+ * @property {XY} at CSS pixels of the pane
+ * @property {GroundPoint} spot
+ * @property {Annotation|null} over who is under the pointer
+ * @property {string[]} words
+ * @typedef {Hovered & Figure} Shown
  */
 export class Ghost {
+  /**
+   * @param {object} parts
+   * @param {import("../../truth/scene.js").Scene} parts.scene
+   * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../views/panes.js").Panes} parts.panes
+   * @param {import("./guard.js").Guard} parts.guard
+   * @param {import("../settings.js").Settings} parts.settings
+   * @param {import("./heads.js").Heads} parts.heads
+   */
   constructor({ scene, store, panes, guard, settings, heads }) {
-    Object.assign(this, {
-      _scene: scene,
-      _store: store,
-      _panes: panes,
-      _guard: guard,
-      _settings: settings,
-      _heads: heads,
-    });
-    this._shown = null; // {pane, at, spot, words, annotation, look}
-    panes.addExtra((pane) => this._items(pane));
-    this._doubtAt = null; // fetched when the pointer comes first
+    this._scene = scene;
+    this._store = store;
+    this._panes = panes;
+    this._guard = guard;
+    this._settings = settings;
+    this._heads = heads;
+    /** @type {Shown|null} */
+    this._shown = null;
+    panes.addExtra(/** @param {Pane} pane */ (pane) => this._items(pane));
+    /** @type {DoubtPart["uncertaintyAt"]|null} fetched when the pointer comes first */
+    this._doubtAt = null;
+    /** @type {() => Promise<DoubtPart|null>} */
     this._doubtPart = fetched(SILENT, import.meta.resolve("../../truth/uncertainty.js"));
     this._fetching = false;
     store.on("frame", () => this.hide());
@@ -33,11 +60,14 @@ export class Ghost {
     settings.watch("ghost", (on) => on || this.hide());
   }
 
-  /** @param {object|null} over who is under the pointer: a click would select them, a right click still moves */
+  /**
+   * @param {Pane} pane @param {XY} at CSS pixels of the pane
+   * @param {Annotation|null} over who is under the pointer: a click would select them, a right click still moves
+   */
   hover(pane, at, over) {
-    const selected = this._store.selected();
+    const selected = this._store.selected() ?? null;
     if (!this._settings.get("ghost") || !this._canPlace(pane, at) || (over && !selected)) return this.hide();
-    const moved = over && selected;
+    const moved = over ? selected : null;
     const spot = spotOn(this._scene, this._store, this._heads.ground(pane, at, moved), moved?.person ?? null);
     if (spot.position !== null && this._isShown(pane, spot, over)) return;
     const doubt = this._doubt(pane, spot, moved);
@@ -53,6 +83,7 @@ export class Ghost {
     this._panes.markPeople();
   }
 
+  /** @param {Pane} pane @param {GroundPoint} spot @param {Doubt} doubt */
   _words(pane, spot, { metres, settles }) {
     const words = spotWords(this._scene, spot, pane.view.byTable);
     if (this._heads.active) words.push(gettext("the top of the head is here"));
@@ -63,10 +94,13 @@ export class Ghost {
     return words;
   }
 
-  /** How far a click here can be off, and the pane where one more would settle it. */
+  /**
+   * How far a click here can be off, and the pane where one more would settle it.
+   * @param {Pane} pane @param {GroundPoint} spot @param {Annotation|null} moved @returns {Doubt}
+   */
   _doubt(pane, spot, moved) {
     if (!this._doubtAt) this._fetchDoubt();
-    if (!this._doubtAt || spot.position === null) return { metres: 0, settles: null };
+    if (!this._doubtAt || spot.position === null || !spot.ground) return { metres: 0, settles: null };
     return this._doubtAt(this._scene, this._panes.shown, pane, spot.ground, this._heads.height(pane, moved));
   }
 
@@ -81,17 +115,22 @@ export class Ghost {
     if (shown) this.hover(shown.pane, shown.at, shown.over);
   }
 
-  /** The pane that would settle it is framed. */
+  /**
+   * The pane that would settle it is framed.
+   * @param {Pane|null} settling
+   */
   _point(settling) {
     for (const { element } of this._panes.all) element.toggleAttribute("data-settles", element === settling?.element);
   }
 
+  /** @param {Pane} pane @param {XY} at */
   _canPlace(pane, at) {
     if (!this._guard.editable || !pane.transform || this._heads.refusal(pane)) return false;
     const { x, y } = pane.transform.toSource(at.x, at.y);
     return x >= 0 && y >= 0 && x < pane.view.size.width && y < pane.view.size.height;
   }
 
+  /** @param {Pane} pane @param {GroundPoint} spot @param {Annotation|null} over */
   _isShown(pane, { position, problem }, over) {
     const shown = this._shown;
     return (
@@ -99,39 +138,54 @@ export class Ghost {
     );
   }
 
-  /** A new person has the usual size, one who is moved keeps their own. */
+  /**
+   * A new person has the usual size, one who is moved keeps their own.
+   * @param {GroundPoint} spot @param {Annotation|null} moved @returns {Figure}
+   */
   _figure({ position, problem }, moved) {
     if (position === null) return { annotation: null, look: LOOKS.refused };
-    const { height, radius } = moved || { height: null, radius: null };
-    const figure = annotation({ person: null, position, height, radius });
+    const { height, radius } = moved ?? { height: null, radius: null };
+    const figure = annotation({ person: NOBODY, position, height, radius });
     return { annotation: figure, look: problem ? LOOKS.refused : LOOKS.ghost };
   }
 
+  /** @param {Pane} pane */
   _items(pane) {
-    if (!this._shown || !pane.transform) return [];
-    return [...this._rayItems(pane), ...this._figureItems(pane), ...this._readoutItems(pane)];
+    const [shown, { transform }] = [this._shown, pane];
+    if (!shown || !transform) return [];
+    return [
+      ...this._rayItems(pane, transform, shown),
+      ...this._figureItems(pane, transform, shown),
+      ...this._readoutItems(pane, transform, shown),
+    ];
   }
 
-  _figureItems(pane) {
-    const { annotation: figure, look, spot } = this._shown;
+  /**
+   * Without a number above: nobody new has one, and who is moved shows it already.
+   * @param {Pane} pane @param {Transform} transform @param {Shown} shown
+   */
+  _figureItems(pane, transform, { annotation: figure, look, spot }) {
     if (figure) {
       if (!pane.view.box(figure)) return [];
-      return [{ ...pane.view.item(figure, look, pane.transform, this._panes.options), id: "ghost" }];
+      const options = { ...this._panes.options, labelOpacity: 0 };
+      return [{ ...pane.view.item(figure, look, transform, options), id: "ghost" }];
     }
     const point = spot.ground && pane.view.point(spot.ground);
-    return point ? [crossItem("ghost", pane.transform.toPane(point.x, point.y), look.colour)] : [];
+    return point ? [crossItem("ghost", transform.toPane(point.x, point.y), look.colour)] : [];
   }
 
-  /** How deep a click lands depends on its height in the picture: along this line it can be wrong most. */
-  _rayItems(pane) {
-    const { pane: origin, spot } = this._shown;
-    const camera = this._scene.cameras[origin.view.index];
-    if (!camera || !spot.ground || pane === origin) return [];
-    const [[x1, y1], { x: x2, y: y2 }] = [camera.centre, spot.ground];
-    return this._groundLines(pane, x1, y1, x2, y2).map((line, index) =>
+  /**
+   * How deep a click lands depends on its height in the picture: along this line it can be wrong most.
+   * @param {Pane} pane @param {Transform} transform @param {Shown} shown
+   */
+  _rayItems(pane, transform, { pane: origin, spot }) {
+    const { index } = origin.view;
+    if (index === null || !spot.ground || pane === origin) return [];
+    const [x1, y1] = this._scene.cameras[index].centre;
+    return this._groundLines(pane, { x: x1, y: y1 }, spot.ground).map((line, place) =>
       lineItem(
-        `ghost-ray-${index}`,
-        line.map(({ x, y }) => pane.transform.toPane(x, y)),
+        `ghost-ray-${place}`,
+        line.map(({ x, y }) => transform.toPane(x, y)),
         pane.room,
         CYAN,
         [5, 4],
@@ -139,17 +193,21 @@ export class Ghost {
     );
   }
 
-  _groundLines(pane, x1, y1, x2, y2) {
-    if (pane.view.index === null) return [[pane.view.point({ x: x1, y: y1 }), pane.view.point({ x: x2, y: y2 })]];
-    return groundLine(this._scene.cameras[pane.view.index], x1, y1, x2, y2);
+  /** @param {Pane} pane @param {XY} from metres @param {XY} to @returns {XY[][]} */
+  _groundLines({ view }, from, to) {
+    if (view.index !== null) return groundLine(this._scene.cameras[view.index], from.x, from.y, to.x, to.y);
+    const [start, end] = [view.point(from), view.point(to)];
+    return start && end ? [[start, end]] : [];
   }
 
-  /** At the pointer and, from above, at the place on the map. */
-  _readoutItems(pane) {
-    const { pane: origin, at, spot, words, look } = this._shown;
+  /**
+   * At the pointer and, from above, at the place on the map.
+   * @param {Pane} pane @param {Transform} transform @param {Shown} shown
+   */
+  _readoutItems(pane, transform, { pane: origin, at, spot, words, look }) {
     if (pane === origin) return [readoutItem("ghost-readout", pane.room, at, words, look.colour)];
-    if (pane.view.index !== null || !spot.ground) return [];
-    const { x, y } = pane.view.point(spot.ground);
-    return [readoutItem("ghost-readout", pane.room, pane.transform.toPane(x, y), words, look.colour)];
+    const point = pane.view.index === null && spot.ground && pane.view.point(spot.ground);
+    if (!point) return [];
+    return [readoutItem("ghost-readout", pane.room, transform.toPane(point.x, point.y), words, look.colour)];
   }
 }

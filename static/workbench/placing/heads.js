@@ -5,11 +5,20 @@ import { keyFor } from "../keys/keys.js";
 /**
  * Clicks that mean the top of a head, for people whose feet nobody sees. The place is where the ray through the
  * pixel is as high above the ground as the person is tall. Emits `change` {on}.
+ * @typedef {import("../../truth/annotation.js").Annotation} Annotation
+ * @typedef {import("../../truth/ground_point.js").XY} XY
+ * @typedef {import("../../truth/scene.js").Scene} Scene
+ * @typedef {import("../../views/pane.js").Pane} Pane
+ * @typedef {XY & {z: number}} Pixel of a view's picture, and how many metres above the ground is what it shows
+ * @extends {Emitter<{change: {on: boolean}}>}
  */
 export class Heads extends Emitter {
+  /** @param {{scene: Scene, notices: {say: (text: string) => void}}} parts */
   constructor({ scene, notices }) {
     super();
-    Object.assign(this, { _scene: scene, _notices: notices, active: false });
+    this._scene = scene;
+    this._notices = notices;
+    this.active = false;
   }
 
   toggle(on = !this.active) {
@@ -22,7 +31,10 @@ export class Heads extends Emitter {
     this._notices.say(words);
   }
 
-  /** Why no head can be clicked on in a view, or null. */
+  /**
+   * Why no head can be clicked on in a view, or null.
+   * @param {Pane} pane
+   */
   refusal(pane) {
     if (!this.active || !pane.view.byTable) return null;
     const words = { view: pane.view.title, key: keyFor("heads") };
@@ -32,20 +44,35 @@ export class Heads extends Emitter {
     );
   }
 
-  /** Metres above the ground of what is clicked on. @param {object|null} person null: somebody new */
+  /**
+   * Metres above the ground of what is clicked on.
+   * @param {Pane} pane @param {Annotation|null} person null: somebody new @returns {number}
+   */
   height(pane, person) {
     if (!this.active || pane.view.index === null) return 0;
     return person ? this._scene.cylinderOf(person).height : this._scene.cylinder.height;
   }
 
-  /** The ground point under what is clicked on, or null. `at` in CSS pixels of the pane. */
+  /**
+   * The ground point under what is clicked on, or null.
+   * @param {Pane} pane @param {XY} at CSS pixels of the pane @param {Annotation|null} person @returns {XY|null}
+   */
   ground(pane, at, person) {
-    return pane.view.ground(pane.transform.toSource(at.x, at.y), this.height(pane, person));
+    return pane.view.ground(clicked(pane, at), this.height(pane, person));
   }
 
-  /** What is clicked on: a pixel of the view's picture, and how high above the ground it is. */
+  /**
+   * What is clicked on.
+   * @param {Pane} pane @param {XY} at CSS pixels of the pane @param {Annotation|null} person @returns {Pixel}
+   */
   pixel(pane, at, person) {
-    const { x, y } = pane.transform.toSource(at.x, at.y);
+    const { x, y } = clicked(pane, at);
     return { x, y, z: this.height(pane, person) };
   }
+}
+
+/** @param {Pane} pane @param {XY} at @returns {XY} */
+function clicked({ transform }, { x, y }) {
+  if (!transform) throw new TypeError("a pane without room cannot be clicked on");
+  return transform.toSource(x, y);
 }

@@ -4,27 +4,61 @@ import * as commands from "../../truth/commands.js";
 import { spotOn } from "../../truth/ground_point.js";
 import { freePosition } from "../../truth/propagation.js";
 import { keyFor } from "../keys/keys.js";
+import { DIRECTIONS } from "./directions.js";
 
 const FAR = 10; // positions a step with Shift goes
 
-/** Placing people and moving them, by click and by arrow key. */
+/**
+ * Placing people and moving them, by click and by arrow key.
+ * @typedef {import("../../truth/annotation.js").Annotation} Annotation
+ * @typedef {import("../../truth/ground_point.js").XY} XY
+ * @typedef {import("../../truth/scene.js").Scene} Scene
+ * @typedef {import("../../truth/store.js").Store} Store
+ * @typedef {import("../../views/pane.js").Pane} Pane
+ * @typedef {import("./directions.js").Direction} Direction
+ * @typedef {import("./guard.js").Where} Where
+ * @typedef {(event: KeyboardEvent|null) => void} Row what a key does; a button has no event
+ */
 export class Moving {
+  /**
+   * @param {object} parts
+   * @param {Scene} parts.scene
+   * @param {Store} parts.store
+   * @param {import("../../truth/history.js").History} parts.history
+   * @param {import("./guard.js").Guard} parts.guard
+   * @param {import("./ghost.js").Ghost} parts.ghost
+   * @param {import("./multi_view_click.js").MultiViewClick} parts.multiViewClick
+   * @param {import("./heads.js").Heads} parts.heads
+   * @param {import("./directions.js").Arrows} parts.arrows
+   * @param {import("../keys/key_repeat.js").KeyRepeat} parts.held
+   */
   constructor({ scene, store, history, guard, ghost, multiViewClick, heads, arrows, held }) {
-    Object.assign(this, { scene, store, history, guard, ghost, multiViewClick, heads });
-    Object.assign(this, { _arrows: arrows, _held: held });
+    this.scene = scene;
+    this.store = store;
+    this.history = history;
+    this.guard = guard;
+    this.ghost = ghost;
+    this.multiViewClick = multiViewClick;
+    this.heads = heads;
+    this._arrows = arrows;
+    this._held = held;
   }
 
   /** Rows for the table of actions. */
   table() {
-    return Object.fromEntries(
-      ["left", "right", "up", "down"].flatMap((name) => [
-        [name, (event) => this.step(name, event)],
-        [`${name}Far`, (event) => this.step(name, event, FAR)],
-      ]),
-    );
+    /** @type {Record<string, Row>} */
+    const rows = {};
+    for (const name of DIRECTIONS) {
+      rows[name] = (event) => this.step(name, event);
+      rows[`${name}Far`] = (event) => this.step(name, event, FAR);
+    }
+    return rows;
   }
 
-  /** @returns {boolean} whether somebody new stands there now */
+  /**
+   * @param {Pane} pane @param {XY} at CSS pixels of the pane @param {Where} event where a refusal is said
+   * @returns {boolean} whether somebody new stands there now
+   */
   place(pane, at, event) {
     const position = this.guard.refused(event) ? null : this._positionUnder(pane, at, event, null);
     if (position === null) return false;
@@ -39,7 +73,10 @@ export class Moving {
     return true;
   }
 
-  /** @returns {boolean} whether the selected person stands there now */
+  /**
+   * @param {Pane} pane @param {XY} at @param {Where} event
+   * @returns {boolean} whether the selected person stands there now
+   */
   moveHere(pane, at, event) {
     const person = this.guard.selected(event);
     const position = person && this._positionUnder(pane, at, event, person);
@@ -49,7 +86,10 @@ export class Moving {
     return true;
   }
 
-  /** The feet of the selected person once more, in another view. */
+  /**
+   * The feet of the selected person once more, in another view.
+   * @param {Pane} pane @param {XY} at @param {Where} event
+   */
   sight(pane, at, event) {
     if (this.guard.refused(event)) return;
     const refusal = this.heads.refusal(pane);
@@ -57,13 +97,14 @@ export class Moving {
     if (pane.view.index === null)
       return this.guard.say(event, gettext("The map sees from nowhere: click the feet in a camera's view"));
     const person = this.store.selected();
-    if (!person) return this.place(pane, at, event);
+    if (!person) return void this.place(pane, at, event);
     const pixel = this.heads.pixel(pane, at, person);
     if (this.multiViewClick.add(pane, pixel, event, (position) => this.moveTo(person, position, event))) return;
     if (this.moveHere(pane, at, event))
       this.guard.say(event, gettext("Now Alt + click on the same feet in another view"));
   }
 
+  /** @param {Direction} name @param {KeyboardEvent|null} event @param {number|null} [far] positions, if not as many as the key's pace */
   step(name, event, far = null) {
     const person = this.guard.selected();
     if (!person) return;
@@ -76,7 +117,10 @@ export class Moving {
     this.guard.say(beside, gettext("The ground area ends here"));
   }
 
-  /** @returns {boolean} whether the person stands there now */
+  /**
+   * @param {Annotation} person @param {number} position @param {Where} place
+   * @returns {boolean} whether the person stands there now
+   */
   moveTo(person, position, place) {
     const occupant = this.store.occupant(position, person.person);
     if (occupant) {
@@ -89,7 +133,11 @@ export class Moving {
     return true;
   }
 
-  /** So many positions further, and past whoever stands exactly there: a press is never lost on a neighbour. */
+  /**
+   * So many positions further, and past whoever stands exactly there: a press is never lost on a neighbour.
+   * @param {Annotation} person @param {import("./directions.js").Step} step @param {number} cells
+   * @returns {number|null} null: outside the ground area
+   */
   _steppedFree(person, { columns, rows }, cells) {
     for (let far = cells; ; far += 1) {
       const position = this.scene.stepped(person.position, columns * far, rows * far);
@@ -97,6 +145,7 @@ export class Moving {
     }
   }
 
+  /** @param {Pane} pane @param {XY} at @param {Where} event @param {Annotation|null} person */
   _positionUnder(pane, at, event, person) {
     const refusal = this.heads.refusal(pane);
     if (refusal) this.guard.say(event, refusal);
@@ -114,7 +163,10 @@ export class Moving {
   }
 }
 
-/** Where a person lands who is dragged to a ground point: on the grid, on no one's toes. */
+/**
+ * Where a person lands who is dragged to a ground point: on the grid, on no one's toes.
+ * @param {Scene} scene @param {Store} store @param {Annotation} person @param {XY} ground
+ */
 export function landing(scene, store, person, ground) {
   const taken = new Set([...store.people().values()].filter((one) => one !== person).map(({ position }) => position));
   const position = freePosition(scene.grid, ground, taken);

@@ -4,11 +4,34 @@ import { changed } from "../../truth/annotation.js";
 import { patch } from "../../truth/commands.js";
 
 const STEP = { height: 0.02, radius: 0.01 }; // metres
+/** @type {readonly Size[]} */
+const SIZES = ["height", "radius"];
 
-/** Height and width of people. Who gets a size of their own keeps it in all later frames. */
+/**
+ * Height and width of people. Who gets a size of their own keeps it in all later frames.
+ * @typedef {import("../../truth/annotation.js").Annotation} Annotation
+ * @typedef {import("../../truth/scene.js").Scene} Scene
+ * @typedef {import("../../truth/store.js").Store} Store
+ * @typedef {"height"|"radius"} Size
+ * @typedef {Partial<Record<Size, number|null>>} SizeValues metres; null: the dataset's cylinder
+ */
 export class Sizes {
+  /**
+   * @param {object} parts
+   * @param {Scene} parts.scene
+   * @param {Store} parts.store
+   * @param {import("../../truth/history.js").History} parts.history
+   * @param {import("./guard.js").Guard} parts.guard
+   * @param {import("../../saving/loader.js").Loader} parts.loader
+   * @param {import("../../base/notices.js").Notices} parts.notices
+   */
   constructor({ scene, store, history, guard, loader, notices }) {
-    Object.assign(this, { scene, store, history, guard, loader, notices });
+    this.scene = scene;
+    this.store = store;
+    this.history = history;
+    this.guard = guard;
+    this.loader = loader;
+    this.notices = notices;
     this._loading = false;
   }
 
@@ -23,6 +46,7 @@ export class Sizes {
     };
   }
 
+  /** @param {Size} name @param {1|-1} direction */
   step(name, direction) {
     const person = this.guard.selected();
     if (!person) return;
@@ -37,21 +61,25 @@ export class Sizes {
     if (person) this.set(person, { height: null, radius: null });
   }
 
-  /** @param {{height?: number|null, radius?: number|null}} values metres; null: the dataset's cylinder */
+  /** @param {Annotation} person @param {SizeValues} values */
   async set(person, values) {
     if (Object.values(values).some((value) => value !== null) && this.refused()) return;
     if (!(await this._laterFramesLoaded())) return;
     const current = this.store.person(person.person);
     if (!current) return;
     this.history.run(resize(this.store, person.person, this._withDefaults(values)));
-    const { height, radius } = this.scene.cylinderOf(this.store.person(person.person));
+    const { height, radius } = this.scene.cylinderOf(this.store.marked(person.person));
     const words = { person: person.person, height: height.toFixed(2), width: (2 * radius).toFixed(2) };
     this.guard.say(this.guard.besideFoot(current), gettext("Person {person}: {height} m tall, {width} m wide", words));
   }
 
-  /** Tables hold the usual size only: where a view has nothing else, nobody gets a size of their own, and that is said. */
+  /**
+   * Tables hold the usual size only: where a view has nothing else, nobody gets a size of their own, and that is said.
+   * @param {import("./guard.js").Where} [place]
+   */
   refused(place = null) {
-    const unknown = this.scene.cameras.filter(({ byTable }) => byTable).map(({ name }) => name);
+    const unknown = [];
+    for (const { byTable, name } of this.scene.cameras) if (byTable) unknown.push(name);
     if (!unknown.length) return false;
     this.guard.say(
       place,
@@ -62,14 +90,17 @@ export class Sizes {
     return true;
   }
 
-  /** The usual size is no size of one's own. */
+  /**
+   * The usual size is no size of one's own.
+   * @param {SizeValues} values @returns {SizeValues}
+   */
   _withDefaults(values) {
-    return Object.fromEntries(
-      Object.entries(values).map(([name, value]) => [
-        name,
-        Math.abs(value - this.scene.cylinder[name]) < 1e-6 ? null : value,
-      ]),
-    );
+    const own = { ...values };
+    for (const name of SIZES) {
+      const value = own[name];
+      if (typeof value === "number" && Math.abs(value - this.scene.cylinder[name]) < 1e-6) own[name] = null;
+    }
+    return own;
   }
 
   /** Long layers are loaded in pieces; the later frames have to be there to be changed. */
@@ -93,19 +124,26 @@ export class Sizes {
   }
 }
 
-/** A size from this frame on, wherever the person occurs: one step to undo. */
+/**
+ * A size from this frame on, wherever the person occurs: one step to undo.
+ * @param {Store} store @param {number} person @param {SizeValues} values
+ */
 export function resize(store, person, values) {
   const later = store.numbers.slice(store.numbers.indexOf(store.current));
   const edits = later
     .filter((number) => store.person(person, number))
-    .map((number) => ({ frame: number, person, after: changed(store.person(person, number), values) }));
+    .map((number) => ({ frame: number, person, after: changed(store.marked(person, number), values) }));
   return patch(store, gettext("change the size of person {person}", { person }), edits, {
     select: person,
     group: `size ${store.current} ${person}`,
   });
 }
 
-/** The height (metres, whole centimetres) whose rectangle in a view ends at `top` (image pixels). */
+/**
+ * The height (metres, whole centimetres) whose rectangle in a view ends at `top`.
+ * @param {Scene} scene @param {import("../../views/pane.js").Pane["view"]} view
+ * @param {Annotation} person @param {number} top image pixels
+ */
 export function heightReaching(scene, view, person, top) {
   let [low, high] = scene.sizes.height;
   while (high - low > 0.005) {
@@ -118,12 +156,20 @@ export function heightReaching(scene, view, person, top) {
   return allowed(scene, "height", Math.round(low * 100) / 100);
 }
 
+/** @param {Scene} scene @param {Size} name */
 function limitWords(scene, name) {
-  const [least, most] = scene.sizes[name].map((metres) => (name === "radius" ? 2 * metres : metres).toFixed(2));
-  if (name === "radius") return gettext("People are {least} to {most} m wide", { least, most });
-  return gettext("People are {least} to {most} m tall", { least, most });
+  const [least, most] = scene.sizes[name];
+  const words = { least: inWords(name, least), most: inWords(name, most) };
+  if (name === "radius") return gettext("People are {least} to {most} m wide", words);
+  return gettext("People are {least} to {most} m tall", words);
 }
 
+/** @param {Size} name @param {number} metres */
+function inWords(name, metres) {
+  return (name === "radius" ? 2 * metres : metres).toFixed(2);
+}
+
+/** @param {Scene} scene @param {Size} name @param {number} metres */
 function allowed(scene, name, metres) {
   const [least, most] = scene.sizes[name];
   return Number(Math.min(Math.max(metres, least), most).toFixed(3));
