@@ -42,6 +42,8 @@ format: $(DEV_ENVIRONMENT) $(NODE_ENVIRONMENT) ## let ruff and biome repair and 
 
 types: $(DEV_ENVIRONMENT) $(NODE_ENVIRONMENT) ## mypy, and tsc over the browser's half
 	$(BIN)/mypy annotator gtm_hit
+	$(NODE)/tsc -p tsconfig.json
+	$(NODE)/tsc -p tsconfig.pure.json
 
 migrations-check: $(DEV_ENVIRONMENT) ## models and migrations tell the same story
 	$(CHECK) $(BIN)/python manage.py makemigrations --check --dry-run

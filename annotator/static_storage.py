@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -31,6 +32,10 @@ class ModuleManifestStaticFilesStorage(CompressedManifestStaticFilesStorage):
 
     support_js_module_import_aggregation = True
     patterns = (*CompressedManifestStaticFilesStorage.patterns, RESOLVED)
+
+    def post_process(self, paths: dict[str, Any], dry_run: bool = False, **options: Any) -> Iterator[Any]:
+        """Names are looked for in what was collected: without comments, where types import in circles."""
+        yield from super().post_process({name: (self, name) for name in paths}, dry_run, **options)
 
     def _save(self, name: str, content: Any) -> str:
         path = PurePosixPath(name)

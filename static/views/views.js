@@ -27,8 +27,8 @@ export class Views {
   /** Rows for the table of actions. */
   table() {
     return {
-      /** @param {KeyboardEvent} event */
-      toggleView: (event) => this._toggleNumber(Number(typed(event))),
+      /** @param {KeyboardEvent|null} event a button says no number */
+      toggleView: (event) => event && this._toggleNumber(Number(typed(event))),
       largeView: () => this.toggleLarge(),
       allViews: () => this.showAll(),
     };
