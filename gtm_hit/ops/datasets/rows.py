@@ -15,9 +15,9 @@ from gtm_hit.ops.datasets.annotations import ImportedFrame
 from gtm_hit.ops.datasets.insert import insert
 from gtm_hit.ops.datasets.pictures import Key
 from gtm_hit.ops.files.images import Derivatives
+from gtm_hit.ops.frames.row import FIELDS
 
 ROWS_AT_ONCE = 2000
-ROW = ("person", "position", "state", "origin", "height", "radius")
 FRAMES_AT_ONCE = 500  # with all their people in memory
 
 
@@ -102,7 +102,7 @@ def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
                 layer_frame=head,
                 revision=1,
                 save_id=uuid.uuid4(),
-                annotations=rows,
+                annotations=[row.as_dict() for row in rows],
                 done=True,
                 nobody=not rows,
                 calibration_id=calibration,
@@ -113,9 +113,9 @@ def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
     )
     insert(
         Annotation,
-        ("layer_id", "frame_id", *ROW),
+        ("layer_id", "frame_id", *FIELDS),
         (
-            (layer.pk, frames[each.number].pk, *(row[name] for name in ROW))
+            (layer.pk, frames[each.number].pk, *row.values())
             for each, rows in zip(imported, people, strict=True)
             for row in rows
         ),
