@@ -111,12 +111,14 @@ def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
         ],
         batch_size=ROWS_AT_ONCE,
     )
+    # Django's `pk` is a property: asked once per person it would take as long as making the row.
+    layer_id, frame_ids = layer.pk, [frames[each.number].pk for each in imported]
     insert(
         Annotation,
         ("layer_id", "frame_id", *FIELDS),
         (
-            (layer.pk, frames[each.number].pk, *row.values())
-            for each, rows in zip(imported, people, strict=True)
+            (layer_id, frame_id, *row.values())
+            for frame_id, rows in zip(frame_ids, people, strict=True)
             for row in rows
         ),
     )
