@@ -28,7 +28,7 @@ def solved(step: lesson.Step) -> tuple[int, list[dict[str, Any]]]:
     exercise = loaded.exercise
     index = 1 if step is lesson.Step.NEXT else 0
     state = loaded.state(index)
-    rows = {one["person"]: one for one in state.annotations}
+    rows = {one.person: one.as_dict() for one in state.annotations}
     if step is lesson.Step.PLACE:
         rows[exercise.next_person] = row(exercise.next_person, exercise.truth[0][exercise.missing])
     if step is lesson.Step.CORRECT:

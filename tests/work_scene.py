@@ -8,6 +8,7 @@ from typing import Any
 
 from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, Layer, Worker
 from gtm_hit.ops.frames import saving
+from gtm_hit.ops.frames.row import Row
 from gtm_hit.ops.work import assignments
 
 MATRIX = [[1000.0, 0.0, 960.0], [0.0, 1000.0, 540.0], [0.0, 0.0, 1.0]]
@@ -80,6 +81,10 @@ def row(person: int = 1, position: int = 1000, **values: Any) -> dict[str, Any]:
     }
 
 
+def as_sent(rows: list[Row]) -> list[dict[str, Any]]:
+    return [one.as_dict() for one in rows]
+
+
 def save(layer: Layer, frame: Frame, rows: list[dict[str, Any]], revision: int = 0, **values: Any) -> Any:
     """Save with a fresh id, by nobody unless `author` is given."""
     author = values.pop("author", None)
@@ -92,7 +97,7 @@ def do_frames(assignment: Assignment) -> None:
     for frame in assignment.batch.frames.all():
         state = saving.read_frame(assignment.layer, frame)
         if not state.done:
-            people = state.annotations
+            people = as_sent(state.annotations)
             save(
                 assignment.layer,
                 frame,

@@ -187,7 +187,7 @@ def looking_back() -> Contest:
     save(layer, frame, [], 1)
     return [
         lambda: [revision.people for revision in history(layer, frame)],
-        lambda: [list(row) for row in state_at(layer, frame, 1).annotations],
+        lambda: [list(row.as_dict()) for row in state_at(layer, frame, 1).annotations],
     ]
 
 

@@ -235,7 +235,8 @@ class Annotations(StaffView):
         layer = layer_or_404(slug, name)
         wanted = asked(request, PlacedQuery)
         rows, following = placed(layer, wanted["from"], wanted["to"], wanted["frames"])
-        return Response({"next": self._address(request, following), "results": rows})
+        results = [row.as_dict() for row in rows]
+        return Response({"next": self._address(request, following), "results": results})
 
     def _address(self, request: Request, following: int | None) -> str | None:
         if following is None:

@@ -121,12 +121,12 @@ class SceneView(PlacedView):
     def get(self, request: Request, **kwargs: Any) -> Response:
         place = self.place(**kwargs)
         heads = LayerFrame.objects.filter(layer=place.layer, frame__in=place.frames.order_by())
-        parts = {head.frame_id: scene.head_part(head) for head in heads}
+        head_of = {head.frame_id: head for head in heads}
         return Response(
             {
                 "mode": place.mode,
                 **scene.dataset_part(place.dataset),
-                "frames": scene.frames_part(place.frames, parts),
+                "frames": scene.frames_part(place.frames, head_of),
                 "layer": {
                     "id": place.layer.pk,
                     "key": place.layer.key,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -95,17 +95,17 @@ def dataset_part(dataset: Dataset) -> dict[str, Any]:
     }
 
 
-def frames_part(frames: Iterable[Frame], heads: dict[int, dict[str, Any]]) -> list[dict[str, Any]]:
-    """The frames with their images; `heads` holds revision, done and nobody by frame id."""
+def frames_part(frames: Iterable[Frame], heads: Mapping[int, LayerFrame]) -> list[dict[str, Any]]:
+    """The frames with their images and where they stand; `heads` by frame id."""
     frames = list(frames)
     images: dict[int, list[dict[str, Any]]] = {frame.pk: [] for frame in frames}
     rows = Image.objects.filter(frame__in=list(images)).order_by("camera__index")
     fields = ("frame_id", "camera__index", "light_digest", "full_digest")
     for frame_id, camera, light, full in rows.values_list(*fields):
         images[frame_id].append({"camera": camera, "light": image_url(light), "full": image_url(full)})
-    untouched = head_part(LayerFrame())
+    untouched = LayerFrame()
     return [
-        {"number": frame.number, "images": images[frame.pk], **heads.get(frame.pk, untouched)}
+        {"number": frame.number, "images": images[frame.pk], **head_part(heads.get(frame.pk, untouched))}
         for frame in frames
     ]
 

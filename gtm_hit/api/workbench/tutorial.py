@@ -22,6 +22,7 @@ from gtm_hit.api.workbench.frames import (
 )
 from gtm_hit.api.workbench.places import TutorialPlace
 from gtm_hit.api.workbench.scene import SceneSerializer
+from gtm_hit.models import LayerFrame
 from gtm_hit.ops.tutorial import lesson
 from gtm_hit.ops.tutorial.lesson import Step
 
@@ -50,7 +51,7 @@ class TutorialScene(TutorialPlace):
     @extend_schema(summary="The tutorial's scene", responses={200: SceneSerializer, **REFUSALS})
     def get(self, request: Request) -> Response:
         loaded = lesson.load()
-        heads = {frame.pk: {"revision": 1, "done": False, "nobody": False} for frame in loaded.frames}
+        heads = {frame.pk: LayerFrame(revision=1) for frame in loaded.frames}
         return Response(
             {
                 "mode": "tutorial",

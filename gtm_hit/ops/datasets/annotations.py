@@ -17,7 +17,8 @@ from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Annotation, Dataset
-from gtm_hit.ops.frames.rules import HEIGHTS, MAX_PEOPLE, RADII, Row, is_number
+from gtm_hit.ops.frames.row import Row
+from gtm_hit.ops.frames.rules import HEIGHTS, MAX_PEOPLE, RADII, is_number
 from gtm_hit.ops.jobs.progress import Steps
 
 MISSING = -(2**31)  # files have no number as low
@@ -48,15 +49,9 @@ class ImportedFrame:
             _or_none(self.heights),
             _or_none(self.radii),
         ]
+        state, origin = Annotation.State.VALIDATED.value, Annotation.Origin.IMPORTED.value
         return [
-            {
-                "person": person,
-                "position": position,
-                "state": Annotation.State.VALIDATED.value,
-                "origin": Annotation.Origin.IMPORTED.value,
-                "height": height,
-                "radius": radius,
-            }
+            Row(person, position, state, origin, height, radius)
             for person, position, height, radius in zip(*columns, strict=True)
         ]
 

@@ -15,9 +15,9 @@ from gtm_hit.ops.datasets.annotations import ImportedFrame
 from gtm_hit.ops.datasets.insert import insert
 from gtm_hit.ops.datasets.pictures import Key
 from gtm_hit.ops.files.images import Derivatives
+from gtm_hit.ops.frames.row import FIELDS
 
 ROWS_AT_ONCE = 2000
-ROW = ("person", "position", "state", "origin", "height", "radius")
 FRAMES_AT_ONCE = 500  # with all their people in memory
 
 
@@ -102,7 +102,7 @@ def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
                 layer_frame=head,
                 revision=1,
                 save_id=uuid.uuid4(),
-                annotations=rows,
+                annotations=[row.as_dict() for row in rows],
                 done=True,
                 nobody=not rows,
                 calibration_id=calibration,
@@ -111,12 +111,14 @@ def _add_annotations(layer: Layer, imported: Sequence[ImportedFrame]) -> None:
         ],
         batch_size=ROWS_AT_ONCE,
     )
+    # Django's `pk` is a property: asked once per person it would take as long as making the row.
+    layer_id, frame_ids = layer.pk, [frames[each.number].pk for each in imported]
     insert(
         Annotation,
-        ("layer_id", "frame_id", *ROW),
+        ("layer_id", "frame_id", *FIELDS),
         (
-            (layer.pk, frames[each.number].pk, *(row[name] for name in ROW))
-            for each, rows in zip(imported, people, strict=True)
+            (layer_id, frame_id, *row.values())
+            for frame_id, rows in zip(frame_ids, people, strict=True)
             for row in rows
         ),
     )

@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from gtm_hit.models import Annotation, Layer
+from gtm_hit.ops.frames.row import FIELDS, Row
 
-FIELDS = ("person", "position", "state", "origin", "height", "radius")
+
+@dataclass(frozen=True)
+class PlacedRow:
+    frame: int  # its number
+    row: Row
+    x: float  # metres
+    y: float
+
+    def as_dict(self) -> dict[str, Any]:
+        return {"frame": self.frame, **self.row.as_dict(), "x": self.x, "y": self.y}
 
 
-def placed(layer: Layer, start: int, end: int, frames: int) -> tuple[list[dict[str, Any]], int | None]:
+def placed(layer: Layer, start: int, end: int, frames: int) -> tuple[list[PlacedRow], int | None]:
     """Annotations of the first `frames` frames numbered start to end, and where to go on.
 
     Frames are chosen by number and annotations by frame: it costs the same anywhere in a long layer.
@@ -18,12 +29,9 @@ def placed(layer: Layer, start: int, end: int, frames: int) -> tuple[list[dict[s
     number_of = dict(wanted.values_list("pk", "number")[: frames + 1])
     following = number_of.popitem()[1] if len(number_of) > frames else None
     rows = Annotation.objects.filter(layer=layer, frame__in=list(number_of)).order_by()
-    found = [
-        {"frame": number_of[frame], **dict(zip(FIELDS, values, strict=True))}
-        for frame, *values in rows.values_list("frame_id", *FIELDS)
-    ]
-    found.sort(key=lambda row: (row["frame"], row["person"]))
-    metres = layer.dataset.grid.metres([row["position"] for row in found]).round(6).tolist()
-    for row, (x, y) in zip(found, metres, strict=True):
-        row.update(x=x, y=y)
-    return found, following
+    # Frame and person come first, and no two rows share them.
+    found = sorted((number_of[frame], *values) for frame, *values in rows.values_list("frame_id", *FIELDS))
+    people = [(number, Row(*values)) for number, *values in found]
+    metres = layer.dataset.grid.metres([row.position for _number, row in people]).round(6).tolist()
+    together = zip(people, metres, strict=True)
+    return [PlacedRow(number, row, x, y) for (number, row), (x, y) in together], following

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gtm_hit.models import Annotation, Assignment, Batch, Frame
-from gtm_hit.ops.frames.rules import Row
-from gtm_hit.ops.frames.saving import ROW_FIELDS
+from gtm_hit.ops.frames.row import Row
+from gtm_hit.ops.frames.saving import rows_by_frame
 
 # Frames on each side: as many as a movement is read from.
 REACH = 4
@@ -50,8 +50,6 @@ def nearest_frames(assignment: Assignment | None, order: str) -> list[NeighbourF
     if assignment is None:
         return []
     frames = list(Frame.objects.filter(batches=assignment.batch_id).order_by(order)[:REACH])
-    people: dict[int, list[Row]] = {frame.pk: [] for frame in frames}
-    rows = Annotation.objects.filter(layer=assignment.layer_id, frame__in=frames).order_by("person")
-    for row in rows.values("frame_id", *ROW_FIELDS):
-        people[row.pop("frame_id")].append(row)
+    annotations = Annotation.objects.filter(layer=assignment.layer_id)
+    people = rows_by_frame(annotations, [frame.pk for frame in frames])
     return [NeighbourFrame(frame.number, people[frame.pk]) for frame in frames]

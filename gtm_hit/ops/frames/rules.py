@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from django.utils.translation import gettext as _
 
@@ -12,13 +11,11 @@ from gtm_hit.formats.problems import MOST_PROBLEMS, shown
 from gtm_hit.geometry.cylinder import HEIGHTS, RADII
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.models import Annotation
+from gtm_hit.ops.frames.row import FIELDS, Row
 
 MAX_PEOPLE = 500
 MAX_PERSON = 2**31 - 1  # PostgreSQL's integer
 MAX_SECONDS = 24 * 3600.0
-
-Row = dict[str, Any]
-"""person, position, state, origin, height, radius: the order in which rows are stored and sent."""
 
 
 @dataclass(frozen=True)
@@ -48,73 +45,86 @@ class InvalidFrame(ValueError):
 def checked(
     annotations: object, grid: Grid, *, done: bool, nobody: bool, seconds: object
 ) -> tuple[list[Row], float]:
-    """The annotations by person, every key present, and the seconds; raises InvalidFrame."""
+    """The annotations by person and the seconds; raises InvalidFrame."""
     problems = FrameProblems()
-    rows: list[Row] = []
-    if not isinstance(annotations, Sequence) or isinstance(annotations, str | bytes):
-        problems.tell("annotations", _("must be a list"))
-    elif len(annotations) > MAX_PEOPLE:
-        reason = _("at most %(count)d people fit in a frame") % {"count": MAX_PEOPLE}
-        problems.tell("annotations", reason)
-    else:
-        for index, annotation in enumerate(annotations):
-            rows.append(checked_row(annotation, f"annotations[{index}]", grid, problems))
-        tell_repeated(rows, problems)
+    rows = checked_rows(annotations, grid, problems)
     if not is_number(seconds, 0, MAX_SECONDS):
         problems.tell("seconds", _("must be a number of seconds within one day"))
     if not problems:
         problems += done_problems(rows, done=done, nobody=nobody)
     if problems:
         raise InvalidFrame(problems)
-    return sorted(rows, key=lambda row: row["person"]), float(seconds)  # type: ignore[arg-type]
+    return sorted(rows, key=lambda row: row.person), float(seconds)  # type: ignore[arg-type]
 
 
-def checked_row(annotation: object, place: str, grid: Grid, problems: FrameProblems) -> Row:
+def checked_rows(annotations: object, grid: Grid, problems: FrameProblems) -> list[Row]:
+    """Only as good as they were sent when there are problems."""
+    if not isinstance(annotations, Sequence) or isinstance(annotations, str | bytes):
+        problems.tell("annotations", _("must be a list"))
+        return []
+    if len(annotations) > MAX_PEOPLE:
+        problems.tell("annotations", _("at most %(count)d people fit in a frame") % {"count": MAX_PEOPLE})
+        return []
+    rows: dict[str, Row] = {}
+    for index, annotation in enumerate(annotations):
+        place = f"annotations[{index}]"
+        if row := checked_row(annotation, place, grid, problems):
+            rows[place] = row
+    tell_repeated(rows, problems)
+    return list(rows.values())
+
+
+def checked_row(annotation: object, place: str, grid: Grid, problems: FrameProblems) -> Row | None:
     if not isinstance(annotation, Mapping):
         problems.tell(place, _("must be an object"))
-        return {"person": None}
-    for key in annotation.keys() - {"person", "position", "state", "origin", "height", "radius"}:
+        return None
+    for key in annotation.keys() - set(FIELDS):
         # shown(): a lone surrogate or a megabyte from the sender must not break the answer.
         problems.tell(place, _("unknown key %(key)s") % {"key": shown(key)})
+    missing = {"person": None, "position": None}
+    row = Row(**{**missing, **{name: annotation[name] for name in FIELDS if name in annotation}})
+    for key in wrong_fields(row, grid):
+        problems.tell(f"{place}.{key}", expected(key, grid))
+    return row
 
-    def check(key: str, fine: bool, reason: str) -> None:
-        if not fine:
-            problems.tell(f"{place}.{key}", reason)
 
-    person, position = annotation.get("person"), annotation.get("position")
-    state = annotation.get("state", Annotation.State.VALIDATED.value)
-    origin = annotation.get("origin", Annotation.Origin.CLICKED.value)
-    height, radius = annotation.get("height"), annotation.get("radius")
-    check("person", is_whole(person, MAX_PERSON), _("must be a whole number from 0"))
-    check(
-        "position",
-        is_whole(position, grid.count - 1),
-        _("must be a position of the grid, 0 to %(last)d") % {"last": grid.count - 1},
-    )
-    check("state", is_choice(state, Annotation.State.values), one_of(Annotation.State.values))
-    check("origin", is_choice(origin, Annotation.Origin.values), one_of(Annotation.Origin.values))
-    check("height", height is None or is_number(height, *HEIGHTS), metres_between(*HEIGHTS))
-    check("radius", radius is None or is_number(radius, *RADII), metres_between(*RADII))
-    return {
-        "person": person,
-        "position": position,
-        "state": state,
-        "origin": origin,
-        "height": height,
-        "radius": radius,
+def wrong_fields(row: Row, grid: Grid) -> list[str]:
+    fine = {
+        "person": is_whole(row.person, MAX_PERSON),
+        "position": is_whole(row.position, grid.count - 1),
+        "state": is_choice(row.state, Annotation.State.values),
+        "origin": is_choice(row.origin, Annotation.Origin.values),
+        "height": row.height is None or is_number(row.height, *HEIGHTS),
+        "radius": row.radius is None or is_number(row.radius, *RADII),
     }
+    return [key for key in FIELDS if not fine[key]]
 
 
-def tell_repeated(rows: list[Row], problems: FrameProblems) -> None:
+def expected(key: str, grid: Grid) -> str:
+    """Asked for what is wrong only: translating takes longer than all the checks."""
+    match key:
+        case "person":
+            return _("must be a whole number from 0")
+        case "position":
+            return _("must be a position of the grid, 0 to %(last)d") % {"last": grid.count - 1}
+        case "state":
+            return one_of(Annotation.State.values)
+        case "origin":
+            return one_of(Annotation.Origin.values)
+        case "height":
+            return metres_between(*HEIGHTS)
+    return metres_between(*RADII)
+
+
+def tell_repeated(rows: Mapping[str, Row], problems: FrameProblems) -> None:
     seen: set[int] = set()
-    for index, row in enumerate(rows):
-        person = row["person"]
-        if not is_whole(person, MAX_PERSON):
+    for place, row in rows.items():
+        if not is_whole(row.person, MAX_PERSON):
             continue
-        if person in seen:
-            reason = _("person %(person)d is already in this frame") % {"person": person}
-            problems.tell(f"annotations[{index}].person", reason)
-        seen.add(person)
+        if row.person in seen:
+            reason = _("person %(person)d is already in this frame") % {"person": row.person}
+            problems.tell(f"{place}.person", reason)
+        seen.add(row.person)
 
 
 def done_problems(rows: list[Row], *, done: bool, nobody: bool) -> list[FrameProblem]:
@@ -124,7 +134,7 @@ def done_problems(rows: list[Row], *, done: bool, nobody: bool) -> list[FramePro
         return []
     if not rows and not nobody:
         return [FrameProblem("done", _("confirm that nobody is there before leaving an empty frame"))]
-    carried = [row["person"] for row in rows if row["state"] == Annotation.State.CARRIED]
+    carried = [row.person for row in rows if row.state == Annotation.State.CARRIED]
     if carried:
         people = ", ".join(str(person) for person in sorted(carried))
         reason = _("people carried over and not yet validated: %(people)s") % {"people": people}

@@ -10,17 +10,16 @@ from typing import Any
 
 from django.contrib.auth.models import AbstractBaseUser
 from django.db import IntegrityError, transaction
-from django.db.models import F, Func, IntegerField, Max
+from django.db.models import F, Func, IntegerField, Max, QuerySet
 from django.utils import timezone
 
 from gtm_hit.models import Annotation, Frame, Layer, LayerFrame, Save, Worker
 from gtm_hit.ops.calibration.versions import in_place_id
-from gtm_hit.ops.frames.rules import Row, checked
+from gtm_hit.ops.frames.row import FIELDS, Row
+from gtm_hit.ops.frames.rules import checked
 from gtm_hit.ops.work import assignments
 
 Author = Worker | AbstractBaseUser | None
-
-ROW_FIELDS = ["person", "position", "state", "origin", "height", "radius"]
 
 
 @dataclass(frozen=True)
@@ -97,7 +96,7 @@ def save_frame(
     save = Save(
         revision=revision + 1,
         save_id=save_id,
-        annotations=rows,
+        annotations=[row.as_dict() for row in rows],
         done=done,
         nobody=nobody,
         seconds=active,
@@ -106,7 +105,7 @@ def save_frame(
     )
     try:
         with transaction.atomic():
-            return write_save(layer, frame, save)
+            return write_save(layer, frame, save, rows)
     except IntegrityError:
         # Two frames were saved under one id at the same moment; the database let one of them in.
         if Save.objects.filter(save_id=save_id).exists():
@@ -114,7 +113,7 @@ def save_frame(
         raise
 
 
-def write_save(layer: Layer, frame: Frame, save: Save) -> FrameState:
+def write_save(layer: Layer, frame: Frame, save: Save, rows: list[Row]) -> FrameState:
     # Always in this order, assignment then frame: two orders would let two requests wait for each other.
     assignment = assignments.locked_for_layer(layer)
     head, _created = LayerFrame.objects.select_for_update(no_key=True).get_or_create(layer=layer, frame=frame)
@@ -123,7 +122,7 @@ def write_save(layer: Layer, frame: Frame, save: Save) -> FrameState:
     assignments.require_editable(layer, assignment, save.worker)
     if head.revision != save.revision - 1:
         raise StaleSave(read_frame(layer, frame))
-    write_rows(layer, frame, save.annotations)
+    write_rows(layer, frame, rows)
     save.layer_frame = head
     save.calibration_id = in_place_id(layer.dataset_id)
     save.save(force_insert=True)
@@ -151,34 +150,38 @@ def repeated_answer(repeated: Save, save: Save, head: LayerFrame, frame: Frame) 
 
 def write_rows(layer: Layer, frame: Frame, rows: list[Row]) -> None:
     """Touch only what differs; remember the largest person number ever used."""
-    before = {row.pop("pk"): row for row in layer_rows(layer, [frame.pk])}
-    known = {row["person"]: row for row in before.values()}
-    kept = {row["person"] for row in rows}
-    gone = [pk for pk, row in before.items() if row["person"] not in kept]
+    present = Annotation.objects.filter(layer=layer, frame=frame).order_by()
+    before = {pk: Row(*values) for pk, *values in present.values_list("pk", *FIELDS)}
+    known = {row.person: row for row in before.values()}
+    kept = {row.person for row in rows}
+    gone = [pk for pk, row in before.items() if row.person not in kept]
     if gone:
         Annotation.objects.filter(pk__in=gone).delete()
-    changed = [row for row in rows if known.get(row["person"]) != row]
+    changed = [row for row in rows if known.get(row.person) != row]
     Annotation.objects.bulk_create(
-        [Annotation(layer=layer, frame=frame, **row) for row in changed],
+        [Annotation(layer=layer, frame=frame, **row.as_dict()) for row in changed],
         update_conflicts=True,
         unique_fields=["layer", "frame", "person"],
-        update_fields=[name for name in ROW_FIELDS if name != "person"],
+        update_fields=[name for name in FIELDS if name != "person"],
     )
     largest = max(kept | known.keys(), default=0)
     Layer.objects.filter(pk=layer.pk, last_person__lt=largest).update(last_person=largest)
 
 
-def layer_rows(layer: Layer, frame_ids: Iterable[int]) -> list[dict[str, Any]]:
-    rows = Annotation.objects.filter(layer=layer, frame__in=list(frame_ids)).order_by("person")
-    return list(rows.values("pk", *ROW_FIELDS))
+def rows_by_frame(annotations: QuerySet[Annotation], frame_ids: Iterable[int]) -> dict[int, list[Row]]:
+    """By person; an empty list for a frame with nobody in it."""
+    rows: dict[int, list[Row]] = {pk: [] for pk in frame_ids}
+    found = annotations.filter(frame__in=list(rows)).order_by("person")
+    for frame_id, *values in found.values_list("frame_id", *FIELDS):
+        rows[frame_id].append(Row(*values))
+    return rows
 
 
 def state_of(save: Save, frame: Frame) -> FrameState:
     return FrameState(
         number=frame.number,
         revision=save.revision,
-        # PostgreSQL keeps the keys of JSON objects in an order of its own.
-        annotations=[{name: row[name] for name in ROW_FIELDS} for row in save.annotations],
+        annotations=[Row.from_dict(row) for row in save.annotations],
         done=save.done,
         nobody=save.nobody,
         saved_at=save.created_at,
@@ -202,10 +205,7 @@ def read_frames(layer: Layer, frames: Iterable[Frame]) -> list[FrameState]:
     ids = [frame.pk for frame in frames]
     heads = {head.frame_id: head for head in LayerFrame.objects.filter(layer=layer, frame__in=ids)}
     newest = {save.layer_frame_id: save for save in newest_saves(layer, ids)}
-    rows: dict[int, list[Row]] = {pk: [] for pk in ids}
-    found = Annotation.objects.filter(layer=layer, frame__in=ids).order_by("person")
-    for row in found.values("frame_id", *ROW_FIELDS):
-        rows[row.pop("frame_id")].append(row)
+    rows = rows_by_frame(Annotation.objects.filter(layer=layer), ids)
     return [present_state(frame, heads.get(frame.pk), newest, rows[frame.pk]) for frame in frames]
 
 

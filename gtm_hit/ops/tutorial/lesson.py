@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from gtm_hit.geometry.cylinder import rectangles
 from gtm_hit.models import Annotation, Dataset, Frame, Layer, Save, Worker
-from gtm_hit.ops.frames.rules import Row, checked
+from gtm_hit.ops.frames.row import Row
+from gtm_hit.ops.frames.rules import checked
 from gtm_hit.ops.frames.saving import FrameState
 from gtm_hit.ops.tutorial.exercise import (
     Exercise,
@@ -65,19 +66,8 @@ class Tutorial:
     def state(self, index: int) -> FrameState:
         yellow = self.exercise.yellow(index)
         people = sorted(self.exercise.shown(index).items())
-        rows = [row_of(person, position, person in yellow) for person, position in people]
+        rows = [(Row.carried if person in yellow else Row)(person, position) for person, position in people]
         return FrameState(self.frames[index].number, 1, rows, False, False, None, "")
-
-
-def row_of(person: int, position: int, yellow: bool) -> Row:
-    return {
-        "person": person,
-        "position": position,
-        "state": Annotation.State.CARRIED.value if yellow else Annotation.State.VALIDATED.value,
-        "origin": Annotation.Origin.CARRIED.value if yellow else Annotation.Origin.CLICKED.value,
-        "height": None,
-        "radius": None,
-    }
 
 
 def load() -> Tutorial:
@@ -175,12 +165,12 @@ def judge(tutorial: Tutorial, step: Step, number: int, rows: list[Row]) -> Verdi
         Step.REMOVE: judge_remove,
         Step.NEXT: judge_next,
     }
-    return judges[step](tutorial.exercise, tutorial.dataset, {row["person"]: row for row in rows})
+    return judges[step](tutorial.exercise, tutorial.dataset, {row.person: row for row in rows})
 
 
 def judge_place(exercise: Exercise, dataset: Dataset, rows: dict[int, Row]) -> Verdict:
     feet = exercise.truth[0][exercise.missing]
-    added = [row["position"] for person, row in rows.items() if person not in exercise.shown(0)]
+    added = [row.position for person, row in rows.items() if person not in exercise.shown(0)]
     if not added:
         return Verdict(False, _("Nobody new yet. Click the feet of the person who has no box."))
     off = float(between(added, [feet], dataset.grid).min())
@@ -217,10 +207,10 @@ def judge_person(person: int, truth: Positions, dataset: Dataset, rows: dict[int
     row = rows.get(person)
     if row is None:
         return Verdict(False, _("Person %(person)d is gone; “Undo” brings them back.") % {"person": person})
-    off = float(between([row["position"]], [truth[person]], dataset.grid)[0, 0])
+    off = float(between([row.position], [truth[person]], dataset.grid)[0, 0])
     if off > NEAR_ENOUGH:
         return Verdict(False, too_far(off))
-    if row["state"] == Annotation.State.CARRIED:
+    if row.state == Annotation.State.CARRIED:
         reason = _("Person %(person)d is still yellow; validate with e.")
         return Verdict(False, reason % {"person": person})
     return None

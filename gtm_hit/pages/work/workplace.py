@@ -13,6 +13,7 @@ from django.urls import get_script_prefix, path, reverse
 from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods, require_POST, require_safe
 
+from gtm_hit.crowd.entry import is_preview, worker_id
 from gtm_hit.models import Layer, Worker
 from gtm_hit.ops.frames import parts
 from gtm_hit.ops.tutorial import lesson
@@ -23,11 +24,8 @@ from gtm_hit.pages.common.address import client_address
 from gtm_hit.pages.common.catalog import workbench_catalog
 from gtm_hit.pages.common.modules import imported_by
 
-# The names under which platforms put their worker's id into the address.
-ID_PARAMETERS = ["worker_id", "workerId", "PROLIFIC_PID", "participant_id"]
 # Whoever tries out ids of others is stopped; at a lab of two hundred a few come with another browser.
 NOT_PROVEN = limits.Limit("not proven", 60, timedelta(hours=1))
-PREVIEW = "ASSIGNMENT_ID_NOT_AVAILABLE"
 
 View = Callable[..., HttpResponse]
 
@@ -51,12 +49,12 @@ def valid_links_only(view: View) -> View:
 def join(request: HttpRequest, token: str) -> HttpResponse:
     entry = links.read_entry(token)
     given = request.POST if request.method == "POST" else request.GET
-    external_id = entry.external_id or next((given[name] for name in ID_PARAMETERS if given.get(name)), "")
+    external_id = entry.external_id or worker_id(given)
     context = {
         "dataset": entry.dataset,
         "external_id": external_id,
         "ask": not external_id,
-        "preview": request.GET.get("assignmentId") == PREVIEW,
+        "preview": is_preview(request.GET),
         "tutorial": lesson.available(),
     }
     if context["preview"]:

@@ -29,6 +29,7 @@ from tests.dataset_folder import (
     options,
     picture,
 )
+from tests.work_scene import as_sent
 
 pytestmark = pytest.mark.django_db
 
@@ -125,7 +126,7 @@ def test_what_is_imported_could_have_been_saved_by_hand(folder: Path) -> None:
         rows, _seconds = checked(
             save.annotations, dataset.grid, done=save.done, nobody=save.nobody, seconds=save.seconds
         )
-        assert rows == save.annotations
+        assert as_sent(rows) == save.annotations
 
 
 def test_imported_people_count_as_used_person_numbers(folder: Path) -> None:

@@ -7,7 +7,7 @@ import pytest
 from gtm_hit.models import Assignment, Batch, Dataset
 from gtm_hit.ops.frames.neighbours import neighbours
 from gtm_hit.ops.work import assignments, batches
-from tests.work_scene import finish, make_dataset, make_worker, row, save
+from tests.work_scene import as_sent, finish, make_dataset, make_worker, row, save
 
 
 @pytest.fixture
@@ -38,9 +38,9 @@ def test_the_frames_next_to_the_batch_come_nearest_first(dataset: Dataset) -> No
     found = neighbours(batch(dataset, 2))
     assert [frame.number for frame in found.before] == [45, 40, 35, 30]
     assert [frame.number for frame in found.after] == [100, 105, 110, 115]
-    assert found.before[0].annotations == [row(1, 11), row(2, 20)]
-    assert found.before[1].annotations == [row(1, 10)]
-    assert found.after[0].annotations == [row(8, 80)]
+    assert as_sent(found.before[0].annotations) == [row(1, 11), row(2, 20)]
+    assert as_sent(found.before[1].annotations) == [row(1, 10)]
+    assert as_sent(found.after[0].annotations) == [row(8, 80)]
 
 
 @pytest.mark.parametrize("state", ["submitted", "returned", "rejected"])
@@ -65,13 +65,13 @@ def test_a_batch_two_further_is_no_neighbour(dataset: Dataset) -> None:
 def test_of_two_accepted_opinions_the_own_copys_is_carried_on(dataset: Dataset) -> None:
     annotated(batch(dataset, 1, copy=1), f45=[row(1, 10)])
     annotated(batch(dataset, 1, copy=2), f45=[row(2, 20)])
-    assert neighbours(batch(dataset, 2, copy=1)).before[0].annotations == [row(1, 10)]
-    assert neighbours(batch(dataset, 2, copy=2)).before[0].annotations == [row(2, 20)]
+    assert as_sent(neighbours(batch(dataset, 2, copy=1)).before[0].annotations) == [row(1, 10)]
+    assert as_sent(neighbours(batch(dataset, 2, copy=2)).before[0].annotations) == [row(2, 20)]
 
 
 def test_without_an_own_one_another_copy_helps(dataset: Dataset) -> None:
     annotated(batch(dataset, 1, copy=2), f45=[row(2, 20)])
-    assert neighbours(batch(dataset, 2, copy=1)).before[0].annotations == [row(2, 20)]
+    assert as_sent(neighbours(batch(dataset, 2, copy=1)).before[0].annotations) == [row(2, 20)]
 
 
 def test_other_datasets_are_never_looked_at(dataset: Dataset) -> None:

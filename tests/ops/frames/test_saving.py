@@ -22,7 +22,7 @@ from gtm_hit.ops.frames.saving import (
     state_at,
 )
 from gtm_hit.ops.work.assignments import ReadOnly
-from tests.work_scene import add_frames, make_dataset, make_layer, make_worker, row, save
+from tests.work_scene import add_frames, as_sent, make_dataset, make_layer, make_worker, row, save
 
 
 @pytest.fixture
@@ -49,13 +49,13 @@ def test_a_save_replaces_the_frame(layer: Layer, frame: Frame) -> None:
     state = save(layer, frame, [row(2, 8), row(3, 9)], 1, done=True)
     assert state == read_frame(layer, frame)
     assert state.revision == 2
-    assert state.annotations == [row(2, 8), row(3, 9)]
+    assert as_sent(state.annotations) == [row(2, 8), row(3, 9)]
     assert state.done
 
 
 def test_annotations_are_stored_by_person_with_every_key(layer: Layer, frame: Frame) -> None:
     save(layer, frame, [{"person": 5, "position": 1}, row(2, height=1.5)])
-    kept = state_at(layer, frame, 1).annotations
+    kept = as_sent(state_at(layer, frame, 1).annotations)
     assert kept == Save.objects.get().annotations == [row(2, height=1.5), row(5, 1)]
     assert list(kept[0]) == ["person", "position", "state", "origin", "height", "radius"]
 

@@ -22,7 +22,7 @@ from gtm_hit.ops.work import assignments, batches
 from gtm_hit.tasks import OPERATIONS
 from tests.disk_events import recorded
 from tests.ops.square_layer import fill, make_square
-from tests.work_scene import finish, make_layer, make_worker, row
+from tests.work_scene import as_sent, finish, make_layer, make_worker, row
 
 pytestmark = pytest.mark.django_db
 
@@ -63,7 +63,7 @@ def change(layer: Layer, number: int, rows: list[dict[str, Any]]) -> None:
 
 def rows_of(layer: Layer, number: int) -> list[dict[str, Any]]:
     frame = Frame.objects.get(dataset=layer.dataset, number=number)
-    return [dict(each) for each in saving.read_frame(layer, frame).annotations]
+    return as_sent(saving.read_frame(layer, frame).annotations)
 
 
 def provenance(made: Release) -> list[dict[str, str]]:

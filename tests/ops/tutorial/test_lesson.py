@@ -19,7 +19,7 @@ from gtm_hit.ops.tutorial.lesson import (
     load,
 )
 from tests.tutorial_scene import make_tutorial, solved
-from tests.work_scene import make_dataset, make_layer, make_worker, row, save
+from tests.work_scene import as_sent, make_dataset, make_layer, make_worker, row, save
 
 
 @pytest.fixture
@@ -35,13 +35,13 @@ def worker(dataset: Dataset) -> Worker:
 def test_the_first_three_frames_are_prepared(dataset: Dataset) -> None:
     states = load().states()
     assert [state.number for state in states] == [0, 5, 10]
-    assert [sum(row["state"] == "carried" for row in state.annotations) for state in states] == [1, 2, 0]
+    assert [sum(row.state == "carried" for row in state.annotations) for state in states] == [1, 2, 0]
 
 
 def test_what_is_shown_gives_no_mistake_away(dataset: Dataset) -> None:
     rows = [row for state in load().states() for row in state.annotations]
-    assert {row["origin"] for row in rows} <= {"clicked", "carried"}
-    assert all(row["height"] is None for row in rows)
+    assert {row.origin for row in rows} <= {"clicked", "carried"}
+    assert all(row.height is None for row in rows)
 
 
 @pytest.mark.parametrize("step", list(Step))
@@ -54,7 +54,7 @@ def test_a_step_done_right_is_remembered(worker: Worker, step: Step) -> None:
 @pytest.mark.parametrize("step", list(Step))
 def test_a_step_not_begun_is_told_what_is_missing(worker: Worker, step: Step) -> None:
     state = load().state(1 if step is Step.NEXT else 0)
-    verdict = check(worker, step, state.number, state.annotations)
+    verdict = check(worker, step, state.number, as_sent(state.annotations))
     assert (verdict.ok, bool(verdict.message)) == (False, True)
     worker.refresh_from_db()
     assert worker.tutorial_steps == []
