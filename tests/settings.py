@@ -14,7 +14,7 @@ if _given.name.startswith(OWN) and (_worker := os.environ.get("PYTEST_XDIST_WORK
     # Two at once would wait for each other's locks, and see each other's files.
     os.environ["DATA_DIR"] = str(_given / _worker)
 
-from annotator.settings import *  # noqa: F403
+from annotator.settings import *  # noqa: E402, F403
 
 Path(FILE_UPLOAD_TEMP_DIR).mkdir(parents=True, exist_ok=True)  # noqa: F405
 PASSWORD_HASHERS = ["django.contrib.auth.hashers.MD5PasswordHasher"]
