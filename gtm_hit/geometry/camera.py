@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gtm_hit.geometry import fisheye, lens
+from gtm_hit.geometry.errors import GeometryError
 
 Floats = NDArray[np.float64]
 
@@ -19,7 +20,7 @@ DISTORTION_LENGTHS = (4, 5, 8, 12, 14)  # the lengths OpenCV's model comes in
 STEEP = 0.1  # below this share of "up" in the image, a camera counts as looking straight down or up
 
 
-class CalibrationError(ValueError):
+class CalibrationError(GeometryError):
     """A calibration no camera can have; says which value."""
 
 

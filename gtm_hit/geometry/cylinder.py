@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gtm_hit.geometry.camera import Camera
+from gtm_hit.geometry.errors import GeometryError
 from gtm_hit.geometry.grid import Grid, Precision
 from gtm_hit.geometry.rectangle_rule import centre_rule, corners_rule
 
@@ -18,7 +19,7 @@ RADII = (0.05, 2.0)  # metres
 BLOCK = 8192  # positions worked on together: their temporaries stay in the processor's cache
 
 
-class CylinderError(ValueError):
+class CylinderError(GeometryError):
     """A radius or height no person has."""
 
 

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gtm_hit.geometry.errors import GeometryError
+
 Floats = NDArray[np.float64]
 Ids = NDArray[np.int64]
 Precision = type[np.float32] | type[np.float64]
 
 
-class GridError(ValueError):
+class GridError(GeometryError):
     """A grid that has no positions, or none at finite places."""
 
 

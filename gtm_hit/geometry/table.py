@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 from gtm_hit.geometry import lens
 from gtm_hit.geometry.camera import Camera, CameraModel
 from gtm_hit.geometry.cylinder import BLOCK, Cylinder, FootRule, fill_block, is_visible
+from gtm_hit.geometry.errors import GeometryError
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.geometry.steps import Steps
 
@@ -37,7 +38,7 @@ USUAL = CameraModel.PINHOLE
 Boxes = NDArray[np.int16]
 
 
-class TableError(ValueError):
+class TableError(GeometryError):
     """A file that is no rectangle table, or a damaged one."""
 
     def __init__(self, path: Path, reason: str) -> None:

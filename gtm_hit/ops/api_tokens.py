@@ -13,16 +13,17 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from gtm_hit.models import ApiToken
+from gtm_hit.ops.errors import OperationError
 
 PREFIX = "gtm_"  # so that scanners for leaked keys can tell what they found
 LAST_USE_EVERY = timedelta(minutes=1)
 
 
-class TokenError(ValueError):
+class TokenError(OperationError, ValueError):
     """A token that cannot be made; says why."""
 
 
-class BadKey(Exception):
+class BadKey(OperationError):
     """No token's key, or one that is revoked or expired, or whose owner is no staff any more."""
 
 

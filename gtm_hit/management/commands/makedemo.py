@@ -7,8 +7,8 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
 from gtm_hit.management.progress import ProgressLine
-from gtm_hit.ops.datasets.demo import DemoError, make_demo
-from gtm_hit.ops.datasets.importing import ImportFailed
+from gtm_hit.ops.datasets.demo import make_demo
+from gtm_hit.ops.errors import OperationError
 
 
 class Command(BaseCommand):
@@ -26,7 +26,7 @@ class Command(BaseCommand):
         progress = ProgressLine(self.stdout)
         try:
             demo = make_demo(slug, frames, seed, progress)
-        except (DemoError, ImportFailed) as error:
+        except OperationError as error:
             progress.finish()
             raise CommandError(str(error)) from error
         progress.finish()

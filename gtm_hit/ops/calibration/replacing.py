@@ -19,6 +19,7 @@ from gtm_hit.models import Annotation, Calibration, Dataset, Image, Layer, Save
 from gtm_hit.ops.calibration import comparison as compared
 from gtm_hit.ops.calibration import versions
 from gtm_hit.ops.calibration.comparison import Comparison, Moved, Person
+from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.jobs.progress import Progress
 
 PEOPLE_TOGETHER = 20_000
@@ -26,7 +27,7 @@ RECTANGLES, COMPARING = "computing rectangles", "comparing boxes"
 LATTICE = 7  # positions along each side that stand in for people where nobody is annotated
 
 
-class ReplacementError(ValueError):
+class ReplacementError(OperationError, ValueError):
     """The calibration cannot be put in place now; says why."""
 
 

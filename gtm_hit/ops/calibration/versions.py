@@ -10,13 +10,14 @@ from django.db.models import Max, QuerySet
 from gtm_hit.formats.calibration.cameras_json import cameras_content, cameras_of, content_digest
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Calibration, Dataset
+from gtm_hit.ops.errors import OperationError
 
 IMPORTED = "import"
 NOT_KNOWN = "in place before versions were kept"
 SOURCE_LENGTH = 300
 
 
-class UnknownVersion(LookupError):
+class UnknownVersion(OperationError, LookupError):
     """The dataset never had this version; says so."""
 
     def __init__(self, dataset: Dataset, number: int) -> None:

@@ -83,7 +83,7 @@ def read_annotations(
         else:
             if len(people) > MAX_PEOPLE:
                 problems.add("", f"{len(people)} people; at most {MAX_PEOPLE} fit in a frame", path)
-            # The reader has refused what `annotation_rules.checked` would, and is several times as fast.
+            # The reader has refused what `frames.rules.checked` would, and is several times as fast.
             found.frames.append(frame_of(number, people, cylinder))
             found.ignored_sizes += sum(map(_has_foreign_size, people))
         progress(done, len(paths))

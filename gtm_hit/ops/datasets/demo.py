@@ -32,6 +32,7 @@ from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.models import Dataset, Layer
 from gtm_hit.ops.datasets.importing import import_dataset
 from gtm_hit.ops.datasets.options import PRESETS, ImportOptions, SceneValues
+from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.jobs.progress import Progress, no_progress
 from gtm_hit.ops.work.batches import make_batches
 
@@ -40,7 +41,7 @@ TRUTH = "truth"
 MOST_FRAMES = 1000
 
 
-class DemoError(ValueError):
+class DemoError(OperationError, ValueError):
     """A demo scene that cannot be made; says why."""
 
 

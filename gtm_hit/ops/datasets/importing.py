@@ -22,6 +22,7 @@ from gtm_hit.ops.datasets import rows
 from gtm_hit.ops.datasets.annotations import ImportedFrame, compare_boxes, read_annotations
 from gtm_hit.ops.datasets.options import PRESETS, ImportOptions, scene, tell_too_many
 from gtm_hit.ops.datasets.pictures import Key, Known, Picture, camera_sizes, make_pictures
+from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.files.images import MOST_PIXELS, Derivatives
 from gtm_hit.ops.files.picture_cleanup import pictures_in_use
 from gtm_hit.ops.ground import grid_files
@@ -30,7 +31,7 @@ from gtm_hit.ops.jobs.progress import WRITING, Progress, no_progress
 FRAMES_AT_ONCE = 500  # in one question to the database
 
 
-class ImportFailed(Exception):
+class ImportFailed(OperationError):
     """Nothing was imported; `problems` says why, file by file."""
 
     def __init__(self, problems: tuple[Problem, ...]) -> None:

@@ -1,4 +1,4 @@
-"""Rows of an import, many at a time. The same invariants as `ops.annotations.save_frame` keeps one by one."""
+"""Rows of an import, many at a time. The same invariants as `frames.saving.save_frame` keeps one by one."""
 
 from __future__ import annotations
 

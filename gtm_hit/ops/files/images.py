@@ -22,6 +22,7 @@ from PIL import Image, ImageFile
 
 from gtm_hit.formats.files import write_bytes
 from gtm_hit.formats.jpeg import JpegError, without_metadata
+from gtm_hit.ops.errors import OperationError
 
 Pixels = NDArray[np.uint8]
 
@@ -36,7 +37,7 @@ _PNG_END = b"IEND\xaeB`\x82"
 _ORIENTATION = 0x0112  # Exif's tag
 
 
-class ImageError(ValueError):
+class ImageError(OperationError, ValueError):
     """A picture that cannot be used; says why."""
 
 

@@ -11,6 +11,7 @@ from gtm_hit.formats.problems import MOST_PROBLEMS, shown
 from gtm_hit.geometry.cylinder import HEIGHTS, RADII
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.models import Annotation
+from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.frames.row import FIELDS, Row
 
 MAX_PEOPLE = 500
@@ -34,7 +35,7 @@ class FrameProblems(list[FrameProblem]):
         self.append(FrameProblem(place, reason))
 
 
-class InvalidFrame(ValueError):
+class InvalidFrame(OperationError, ValueError):
     """A frame that cannot be saved; `problems` lists everything that is wrong with it."""
 
     def __init__(self, problems: list[FrameProblem]) -> None:

@@ -15,6 +15,7 @@ from django.utils import timezone
 
 from gtm_hit.models import Annotation, Frame, Layer, LayerFrame, Save, Worker
 from gtm_hit.ops.calibration.versions import in_place_id
+from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.frames.row import FIELDS, Row
 from gtm_hit.ops.frames.rules import checked
 from gtm_hit.ops.work import assignments
@@ -48,7 +49,7 @@ class Revision:
     calibration: int | None  # number of the version in place then; None: not known
 
 
-class StaleSave(Exception):
+class StaleSave(OperationError):
     """Somebody saved the frame since this edit started; `current` is what is there now."""
 
     def __init__(self, current: FrameState) -> None:
@@ -56,11 +57,11 @@ class StaleSave(Exception):
         self.current = current
 
 
-class SaveIdUsed(Exception):
+class SaveIdUsed(OperationError):
     """The save's id names another save: taking it for a repetition would lose this one."""
 
 
-class UnknownRevision(LookupError):
+class UnknownRevision(OperationError, LookupError):
     """The frame never had this revision."""
 
 

@@ -23,6 +23,7 @@ from django.db.models import F, Q
 from django.utils import timezone
 
 from gtm_hit.models import Dataset, Job
+from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.jobs import lease
 
 TASK = "gtm_hit.tasks.run_job"
@@ -35,7 +36,7 @@ SECONDS_BETWEEN_REPORTS = 0.5
 logger = logging.getLogger(__name__)
 
 
-class JobError(Exception):
+class JobError(OperationError):
     """A reason to stop that the person who started the job can read."""
 
 

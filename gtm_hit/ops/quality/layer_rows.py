@@ -13,6 +13,7 @@ from django.db.models.functions import Coalesce
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.metrics.annotations import Annotations, Floats, Ids
 from gtm_hit.models import Annotation, Dataset, Layer, LayerFrame
+from gtm_hit.ops.errors import OperationError
 
 ROWS_AT_ONCE = 10_000
 SAVED = np.dtype([("layer", "i8"), ("frame", "i8"), ("number", "i8")])
@@ -21,7 +22,7 @@ PLACED = np.dtype(
 )
 
 
-class QualityError(ValueError):
+class QualityError(OperationError, ValueError):
     """Layers that cannot be measured; says why."""
 
 

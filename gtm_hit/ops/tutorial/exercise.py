@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gtm_hit.geometry.grid import Grid
+from gtm_hit.ops.errors import OperationError
 
 SHIFT = 0.40  # metres the misplaced person stands off
 LONELY = 1.0  # metres around the invented person where nobody is
@@ -23,7 +24,7 @@ Views = Callable[[list[int], list[int]], NDArray[np.int64]]
 at the others."""
 
 
-class NoRoom(ValueError):
+class NoRoom(OperationError, ValueError):
     """Frames in which the tutorial's mistakes cannot be made: too few people, or too small a grid."""
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from gtm_hit.geometry.cylinder import rectangles
 from gtm_hit.models import Annotation, Dataset, Frame, Layer, Save, Worker
+from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.frames.row import Row
 from gtm_hit.ops.frames.rules import checked
 from gtm_hit.ops.frames.saving import FrameState
@@ -38,11 +39,11 @@ class Step(StrEnum):
     NEXT = "next"
 
 
-class NoTutorial(LookupError):
+class NoTutorial(OperationError, LookupError):
     """The tutorial's dataset is not there, or its truth has too few people."""
 
 
-class StepsMissing(Exception):
+class StepsMissing(OperationError):
     def __init__(self, steps: list[str]) -> None:
         super().__init__(", ".join(steps))
         self.steps = steps

@@ -17,6 +17,7 @@ from django.utils.translation import gettext as _
 
 from gtm_hit.models import Assignment, Batch, Dataset, Frame, Layer, LayerFrame, Worker
 from gtm_hit.models.work import completion_code
+from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.work import unsaved_leases
 
 State = Assignment.State
@@ -25,7 +26,7 @@ State = Assignment.State
 MAX_TRIES = 200
 
 
-class AssignmentError(Exception):
+class AssignmentError(OperationError):
     pass
 
 

@@ -8,12 +8,13 @@ from django.db import transaction
 from django.utils.translation import gettext as _
 
 from gtm_hit.models import Batch, Dataset, Frame
+from gtm_hit.ops.errors import OperationError
 
 MAX_SIZE = 500
 MAX_COPIES = 20
 
 
-class BatchError(ValueError):
+class BatchError(OperationError, ValueError):
     """A size or a number of copies that makes no batches."""
 
 

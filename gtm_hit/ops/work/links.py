@@ -8,10 +8,11 @@ from typing import Any
 from django.core.signing import BadSignature, Signer
 
 from gtm_hit.models import Assignment, Dataset, Worker
+from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.work import entry_links
 
 
-class BadToken(Exception):
+class BadToken(OperationError):
     """Not signed here, cut off in copying, or revoked."""
 
 

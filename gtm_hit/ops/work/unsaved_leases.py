@@ -13,13 +13,14 @@ from django.db.models import Exists, OuterRef, Sum
 from django.utils import timezone
 
 from gtm_hit.models import Assignment, Dataset, LayerFrame, Worker
+from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.work.digests import digest
 
 REMEMBERED = timedelta(days=1)
 SAVED = Exists(LayerFrame.objects.filter(layer=OuterRef("layer"), revision__gt=0))
 
 
-class TooManyUnsaved(Exception):
+class TooManyUnsaved(OperationError):
     """So many batches were taken from this address, or through this link, that nobody began yet."""
 
 

@@ -9,6 +9,7 @@ from django.utils.crypto import constant_time_compare
 from django.utils.translation import gettext as _
 
 from gtm_hit.models import Assignment, Worker
+from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.work.digests import digest
 
 MAX_ID = 255
@@ -17,11 +18,11 @@ UNBOUND = "-" * 64  # as long as a digest, and no digest
 REFUSED = {"Cc", "Cs", "Zl", "Zp"}  # control characters, lone surrogates, line and paragraph separators
 
 
-class InvalidWorkerId(ValueError):
+class InvalidWorkerId(OperationError, ValueError):
     """An id no platform gives out, or no platform; the message says why in plain words."""
 
 
-class NotProven(Exception):
+class NotProven(OperationError):
     """An id alone is no proof: this browser is not the one its worker began in."""
 
 

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from gtm_hit.ops.datasets.options import ImportOptions
+from gtm_hit.ops.errors import OperationError
 
 _SOURCE = re.compile(r"\s*(?P<camera>[^=\s]+)\s*=\s*(?P<path>.+?)\s*(?:@\s*(?P<offset>[^@/]*?)\s*)?")
 
 
-class SourceError(ValueError):
+class SourceError(OperationError, ValueError):
     """A text that names no video."""
 
 

@@ -14,17 +14,18 @@ import numpy as np
 from gtm_hit.formats.files import check_source
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.ops.datasets.videos.nearest import Taken, nearest_pictures
+from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.files.images import Pixels
 
 CHECKED_PICTURES = 60  # two seconds tell a steady clock from one that is not
 FASTEST = 1000.0  # pictures per second; more is a header that does not know
 
 
-class VideoError(ValueError):
+class VideoError(OperationError, ValueError):
     """A video that cannot be used; says why."""
 
 
-class Stopped(Exception):
+class Stopped(OperationError):
     """Whoever reads the video was asked to stop."""
 
 
