@@ -13,8 +13,8 @@ from playwright.sync_api import Page
 
 from gtm_hit.geometry.camera import Camera, back_project, project
 from gtm_hit.geometry.cylinder import FootRule, rectangles
-from gtm_hit.geometry.footprint import footprint
 from gtm_hit.geometry.grid import Grid
+from tests.geometry.footprint import footprint
 from tests.geometry.rectangle_cases import PATH, UNEVEN_GRID
 from tests.geometry.scenes import (
     MULTIVIEWX_GRID,

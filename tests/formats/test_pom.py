@@ -9,12 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gtm_hit.formats.pom import reading, writing
-from gtm_hit.formats.pom.reading import read_pom
-from gtm_hit.formats.pom.writing import PomHeader, header_text, write_pom
+from gtm_hit.formats import pom
+from gtm_hit.formats.pom import PomHeader, header_text, write_pom
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.geometry.cylinder import Cylinder
 from gtm_hit.geometry.grid import Grid
+from tests.formats import pom_reader
+from tests.formats.pom_reader import read_pom
 
 WILDTRACK = PomHeader(Grid(480, 1440, 0.025, -3.0, -9.0), Cylinder(0.16, 1.8), 7)
 SMALL = PomHeader(Grid(3, 2, 0.5, -1.0, 2.25), Cylinder(0.16, 1.8), 2)
@@ -79,7 +80,7 @@ def test_the_same_table_gives_the_same_bytes(tmp_path: Path) -> None:
 
 
 def test_progress_is_told_up_to_the_last_position(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(writing, "BLOCK_LINES", 4)
+    monkeypatch.setattr(pom, "BLOCK_LINES", 4)
     told: list[tuple[int, int]] = []
     write_pom(tmp_path / "a", SMALL, some_table(SMALL), lambda done, total: told.append((done, total)))
     assert told == [(4, 12), (6, 12), (10, 12), (12, 12)]
@@ -108,7 +109,7 @@ def test_readers_of_the_field_take_a_written_file(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("block", [1, 100, 1 << 20])
 def test_a_written_table_comes_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, block: int) -> None:
-    monkeypatch.setattr(reading, "BLOCK_BYTES", block)
+    monkeypatch.setattr(pom_reader, "BLOCK_BYTES", block)
     header = PomHeader(Grid(30, 20, 0.1, 0.0, -0.3), Cylinder(0.2, 1.7), 3, reduction=0.5)
     table = some_table(header)
     write_pom(tmp_path / "a", header, table)
@@ -189,7 +190,7 @@ def test_a_pair_named_twice_in_one_block_is_told(tmp_path: Path) -> None:
 
 
 def test_a_pair_named_twice_far_apart_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(reading, "BLOCK_BYTES", 1)
+    monkeypatch.setattr(pom_reader, "BLOCK_BYTES", 1)
     text = HEAD + "RECTANGLE 0 1 1 2 3 4\nRECTANGLE 0 2 notvisible\nRECTANGLE 0 1 notvisible\n"
     assert "line 13: camera 0, position 1: is named twice" in problems_of(tmp_path, text)[0]
 

@@ -1,4 +1,4 @@
-"""Reading a POM file; the format is described in `pom`."""
+"""What the tests read POM files with; the format is described in `gtm_hit.formats.pom`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import BinaryIO
 import numpy as np
 
 from gtm_hit.formats.files import check_source, reason_of
-from gtm_hit.formats.pom.writing import PomHeader
+from gtm_hit.formats.pom import PomHeader
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList, shown
 from gtm_hit.geometry.cylinder import Cylinder
 from gtm_hit.geometry.grid import Grid
