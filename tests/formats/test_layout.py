@@ -8,7 +8,7 @@ import pytest
 
 from gtm_hit.formats.calibration.files import match_names
 from gtm_hit.formats.dataset_folder import natural_key
-from gtm_hit.formats.layout import find_layout
+from gtm_hit.formats.layout import Layout, find_layout
 from gtm_hit.formats.problems import FormatError, ProblemList
 
 WILDTRACK = ["CVLab1", "CVLab2", "CVLab3", "CVLab4", "IDIAP1", "IDIAP2", "IDIAP3"]
@@ -33,6 +33,10 @@ def make_dataset(
     return root
 
 
+def frames_of(layout: Layout) -> tuple[int, ...]:
+    return tuple(layout.images[layout.cameras[0]])
+
+
 def problems_of(root: Path, **options: object) -> list[str]:
     with pytest.raises(FormatError) as caught:
         find_layout(root, **options)  # type: ignore[arg-type]
@@ -45,19 +49,22 @@ def problems_of(root: Path, **options: object) -> list[str]:
 def test_multiviewx_is_found_with_its_annotations_one_behind(shared_data: Path) -> None:
     layout = find_layout(shared_data / "multiviewx")
     assert layout.cameras == ("C1", "C2", "C3", "C4", "C5", "C6")
-    assert layout.calibration_names == tuple(f"Camera{number}" for number in range(1, 7))
-    assert layout.frames == tuple(range(10))
+    assert list(layout.calibrations.names.values()) == [f"Camera{number}" for number in range(1, 7)]
+    assert frames_of(layout) == tuple(range(10))
     assert layout.annotations[0].name == "00001.json"
-    assert layout.extrinsic["C6"].name == "extr_Camera6.xml"
+    assert layout.calibrations.extrinsic["C6"].name == "extr_Camera6.xml"
 
 
 def test_wildtrack_is_found_with_a_chosen_folder_of_images(shared_data: Path) -> None:
     layout = find_layout(shared_data / "wildtrack", images=Path("original_frames"))
     assert layout.cameras == tuple(f"C{number}" for number in range(1, 8))
-    assert layout.calibration_names == tuple(WILDTRACK)
+    assert list(layout.calibrations.names.values()) == WILDTRACK
     assert layout.images["C7"][0].parts[-2:] == ("C7", "00000000.jpg")
-    assert layout.intrinsic["C5"].parts[-2:] == ("intrinsic_zero", "intr_IDIAP1.xml")
-    assert layout.intrinsic_original["C5"].parts[-2:] == ("intrinsic_original", "intr_IDIAP1.xml")
+    assert layout.calibrations.intrinsic["C5"].parts[-2:] == ("intrinsic_zero", "intr_IDIAP1.xml")
+    assert layout.calibrations.intrinsic_original["C5"].parts[-2:] == (
+        "intrinsic_original",
+        "intr_IDIAP1.xml",
+    )
 
 
 # Ways a dataset may look
@@ -65,7 +72,7 @@ def test_wildtrack_is_found_with_a_chosen_folder_of_images(shared_data: Path) ->
 
 def test_files_are_given_by_camera_and_frame_number(tmp_path: Path) -> None:
     layout = find_layout(make_dataset(tmp_path))
-    assert layout.frames == (0, 5)
+    assert frames_of(layout) == (0, 5)
     assert layout.images["C2"][5] == tmp_path / "Image_subsets" / "C2" / "00000005.png"
     assert layout.annotations[5] == tmp_path / "annotations_positions" / "00000005.json"
     assert layout.annotation_offset == 0
@@ -81,7 +88,7 @@ def test_a_folder_with_one_image_per_camera_is_one_frame(tmp_path: Path) -> None
     for camera in ("C1", "C2", "C3"):
         touch(tmp_path / "photos" / f"{camera}.jpg")
     layout = find_layout(tmp_path, images=Path("photos"))
-    assert layout.frames == (0,)
+    assert frames_of(layout) == (0,)
     assert layout.images["C3"][0].name == "C3.jpg"
 
 
@@ -89,7 +96,7 @@ def test_images_may_be_chosen_outside_the_dataset(tmp_path: Path) -> None:
     make_dataset(tmp_path / "set", frames=())
     for camera in ("C1", "C2", "C3"):
         touch(tmp_path / "disk" / camera / "7.png")
-    assert find_layout(tmp_path / "set", images=tmp_path / "disk").frames == (7,)
+    assert frames_of(find_layout(tmp_path / "set", images=tmp_path / "disk")) == (7,)
 
 
 def test_one_calibration_file_may_hold_both_parts(tmp_path: Path) -> None:
@@ -97,8 +104,8 @@ def test_one_calibration_file_may_hold_both_parts(tmp_path: Path) -> None:
         touch(tmp_path / "images" / camera / "1.png")
         touch(tmp_path / "calibrations" / f"{camera}.yml")
     layout = find_layout(tmp_path)
-    assert layout.extrinsic == layout.intrinsic
-    assert layout.extrinsic["B"].name == "B.yml"
+    assert layout.calibrations.extrinsic == layout.calibrations.intrinsic
+    assert layout.calibrations.extrinsic["B"].name == "B.yml"
 
 
 def test_both_parts_may_lie_in_one_folder(tmp_path: Path) -> None:
@@ -106,26 +113,22 @@ def test_both_parts_may_lie_in_one_folder(tmp_path: Path) -> None:
     touch(tmp_path / "calibrations" / "extr_A.xml")
     touch(tmp_path / "calibrations" / "intr_A.xml")
     layout = find_layout(tmp_path)
-    assert (layout.extrinsic["A"].name, layout.intrinsic["A"].name) == ("extr_A.xml", "intr_A.xml")
+    assert (layout.calibrations.extrinsic["A"].name, layout.calibrations.intrinsic["A"].name) == (
+        "extr_A.xml",
+        "intr_A.xml",
+    )
 
 
 def test_frame_numbers_may_follow_other_words(tmp_path: Path) -> None:
     make_dataset(tmp_path, frames=["frame_0012"])
-    assert find_layout(tmp_path).frames == (12,)
+    assert frames_of(find_layout(tmp_path)) == (12,)
 
 
 def test_hidden_files_and_other_kinds_are_passed_over(tmp_path: Path) -> None:
     make_dataset(tmp_path)
     for name in (".DS_Store", "._00000000.png", "notes.txt", "@eaDir/x.png"):
         touch(tmp_path / "Image_subsets" / "C1" / name)
-    assert find_layout(tmp_path).frames == (0, 5)
-
-
-def test_calibration_is_not_asked_for_when_it_comes_from_elsewhere(tmp_path: Path) -> None:
-    touch(tmp_path / "images" / "A" / "1.png")
-    layout = find_layout(tmp_path, calibrated=False)
-    assert layout.extrinsic == {}
-    assert layout.calibration_names == ("A",)
+    assert frames_of(find_layout(tmp_path)) == (0, 5)
 
 
 def test_an_offset_can_be_stated(tmp_path: Path) -> None:
@@ -252,13 +255,13 @@ def test_links_that_stay_inside_are_followed(tmp_path: Path) -> None:
     make_dataset(tmp_path)
     (tmp_path / "Image_subsets").rename(tmp_path / "kept")
     (tmp_path / "Image_subsets").symlink_to("kept")
-    assert find_layout(tmp_path).frames == (0, 5)
+    assert frames_of(find_layout(tmp_path)) == (0, 5)
 
 
 def test_a_dataset_may_itself_be_reached_through_a_link(tmp_path: Path) -> None:
     make_dataset(tmp_path / "set")
     (tmp_path / "link").symlink_to(tmp_path / "set")
-    assert find_layout(tmp_path / "link").frames == (0, 5)
+    assert frames_of(find_layout(tmp_path / "link")) == (0, 5)
 
 
 @pytest.mark.parametrize("target", ["00000010.png", "nothing.png"])
@@ -283,7 +286,7 @@ def test_calibrations_and_annotations_may_be_chosen_anywhere(tmp_path: Path) -> 
         calibrations=tmp_path / "my-calibrations",
         annotations=tmp_path / "my-annotations_positions",
     )
-    assert layout.extrinsic["C1"].parent.parent.name == "my-calibrations"
+    assert layout.calibrations.extrinsic["C1"].parent.parent.name == "my-calibrations"
     assert list(layout.annotations) == [0, 5]
 
 

@@ -117,7 +117,8 @@ def _read(options: ImportOptions, progress: Progress, problems: ProblemList) -> 
     known = list(existing.cameras.all()) if existing else []
     sizes = camera_sizes(layout.images, {row.name: (row.width, row.height) for row in known}, problems)
     progress("reading image headers", 1, 1)
-    views = read_views(layout, sizes, options.unit, options.undistort, problems)
+    files = layout.calibrations
+    views = read_views(files, layout.cameras, sizes, options.unit, options.undistort, problems)
     cameras = [view.camera for view in views]
     tell_too_many(dataset, len(layout.cameras), problems)
     if len(cameras) == len(layout.cameras):

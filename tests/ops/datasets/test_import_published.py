@@ -92,7 +92,8 @@ def first_view(shared_data: Path) -> View:
     """WILDTRACK's C1 with the undistortion an import uses."""
     layout = find_layout(shared_data / "wildtrack", images=Path("original_frames"))
     problems = ProblemList("")
-    views = read_views(layout, dict.fromkeys(layout.cameras, (1920, 1080)), "cm", True, problems)
+    sizes = dict.fromkeys(layout.cameras, (1920, 1080))
+    views = read_views(layout.calibrations, layout.cameras, sizes, "cm", True, problems)
     problems.raise_if_any()
     return views[0]
 
