@@ -36,11 +36,11 @@ class Layout:
 
 def find_layout(
     root: Path,
+    problems: ProblemList,
     images: Path | None = None,
     annotation_offset: int | None = None,
     calibrations: Path | None = None,
     annotations: Path | None = None,
-    problems: ProblemList | None = None,
 ) -> Layout:
     """The parts of the dataset in the folder `root`.
 
@@ -49,24 +49,9 @@ def find_layout(
     `annotation_offset` None means 1 for MultiviewX, whose annotation 00001 belongs to image 0000, and 0 for
     everything else.
 
-    Raises FormatError with everything missing, surplus, ambiguous, or leading out of the folder; with a list
-    of `problems` given, adds to that instead, and the layout has what could be found.
+    Everything missing, surplus, ambiguous, or leading out of the folder is added to `problems`; the layout
+    has what could be found.
     """
-    found = ProblemList(root) if problems is None else problems
-    layout = _find_layout(root, images, annotation_offset, calibrations, annotations, found)
-    if problems is None:
-        found.raise_if_any()
-    return layout
-
-
-def _find_layout(
-    root: Path,
-    images: Path | None,
-    annotation_offset: int | None,
-    calibrations: Path | None,
-    annotations: Path | None,
-    problems: ProblemList,
-) -> Layout:
     dataset = DatasetFolder(root, problems)
     by_camera = _images(dataset, images)
     frames = _frames(by_camera, problems)

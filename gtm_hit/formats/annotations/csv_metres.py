@@ -73,15 +73,13 @@ def parse_csv(data: bytes, path: str) -> GroundPoints:
     )
 
 
-def csv_header(persons: bool = True, heights: bool = False) -> bytes:
-    names = ["frame", *(["person"] if persons else []), "x", "y", *(["height"] if heights else [])]
+def csv_header(heights: bool = False) -> bytes:
+    names = ["frame", "person", "x", "y", *(["height"] if heights else [])]
     return (",".join(names) + "\n").encode()
 
 
-def csv_lines(table: GroundPoints, persons: bool = True, heights: bool = False) -> bytes:
-    columns: list[list[str]] = [list(map(str, table.frames.tolist()))]
-    if persons:
-        columns.append(list(map(str, _present(table.persons).tolist())))
+def csv_lines(table: GroundPoints, heights: bool = False) -> bytes:
+    columns = [list(map(str, ids.tolist())) for ids in (table.frames, _present(table.persons))]
     columns += [[short(value) for value in column] for column in table.xy.T.tolist()]
     if heights:
         # NaN is the only number that differs from itself.

@@ -113,9 +113,9 @@ def joined(people: Sequence[str]) -> bytes:
     return ("[\n" + ",\n".join(people) + "\n]" if people else "[]").encode()
 
 
-def write_frame(folder: Path, frame: FrameAnnotations, cameras: int, digits: int = 8) -> Path:
-    """Writes `<folder>/<number>.json`; WILDTRACK has 8 digits, MultiviewX 5."""
-    path = folder / f"{frame.number:0{digits}d}.json"
+def write_frame(folder: Path, frame: FrameAnnotations, cameras: int) -> Path:
+    """Writes `<folder>/<number>.json`; with 8 digits, as WILDTRACK has them."""
+    path = folder / f"{frame.number:08d}.json"
     write_bytes(path, frame_json(frame.people, cameras))
     return path
 

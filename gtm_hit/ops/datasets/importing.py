@@ -165,11 +165,11 @@ def _layout(
     told = existing is not None or "annotation_offset" in {**preset, **options.values}
     layout = find_layout(
         options.folder,
+        problems,
         images=options.images,
         annotation_offset=dataset.annotation_offset if told else None,
         calibrations=options.calibrations,
         annotations=options.annotations,
-        problems=problems,
     )
     dataset.annotation_offset = layout.annotation_offset
     if existing is None and layout.annotations and "annotation_digits" not in {**preset, **options.values}:

@@ -252,14 +252,12 @@ def test_people_come_back_as_they_were(people: list[PersonPosition]) -> None:
     assert frame_json(again, 2) == data
 
 
-def test_published_files_come_back_byte_for_byte(shared_data: Path, tmp_path: Path) -> None:
+def test_published_files_come_back_byte_for_byte(shared_data: Path) -> None:
     grid = Grid(1000, 640, 0.025, 0, 0)
     paths = sorted((shared_data / "multiviewx/annotations_positions").glob("*.json"))
     assert len(paths) == 5
     for path in paths:
-        written = write_frame(tmp_path, read_frame(path, grid, 6), 6, digits=5)
-        assert written.name == path.name
-        assert written.read_bytes() == path.read_bytes()
+        assert frame_json(read_frame(path, grid, 6).people, 6) == path.read_bytes()
 
 
 def test_wildtrack_names_have_eight_digits(tmp_path: Path) -> None:
