@@ -239,7 +239,8 @@ def test_all_formats_go_into_one_export(layer: Layer, tmp_path: Path) -> None:
 def test_rectangles_are_those_of_the_table(layer: Layer, tmp_path: Path) -> None:
     folder = export(layer, tmp_path / "out", "pom", "multiviewx")
     dataset = layer.dataset
-    found = read_pom(folder / "rectangles.pom", dataset.grid, 3)
+    found = read_pom(folder / "rectangles.pom")
+    assert (found.header.grid, found.header.cameras) == (dataset.grid, 3)
     expected = table(dataset)
     for camera in range(3):
         assert (found.boxes[camera] == expected.boxes(camera)).all()
