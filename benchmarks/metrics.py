@@ -56,9 +56,8 @@ def main() -> None:
     report(f"HOTA alone, {size}", lambda: hota.evaluate(long_truth, long_found), 1)
     report(f"MOTA, IDF1, switches and HOTA, {size}", lambda: tracking.evaluate(long_truth, long_found), 1)
     numbers = np.arange(36_000)
-    report(
-        f"summary of a paper's statistics, {size}", lambda: statistics.summarise(long_truth, numbers, 0.5), 1
-    )
+    report(f"tracks, {size}", lambda: statistics.tracks_of(long_truth, numbers), 1)
+    report(f"speeds, {size}", lambda: statistics.speeds(long_truth, numbers, 0.5), 1)
     grid = Grid(480, 1440, 0.025, -3.0, -9.0)
     visible = np.random.default_rng(1).random((7, grid.count)) < 0.5
     report("coverage of all 691,200 positions, 7 cameras", lambda: coverage(grid, visible))

@@ -56,28 +56,18 @@ def photograph(scene: Scene, camera: Camera, view: View, cast: Cast, now: Moment
     """The picture (H, W, 3), RGB, of the frame with this index."""
     picture = _with_shadows(view, now)
     mood, bright = mood_of(scene, camera), _vignette(camera.height, camera.width)
-    for sprite in _far_to_near(camera, cast, now, frame).values():
+    for sprite in far_to_near(camera, cast, now, frame).values():
         _put(picture, sprite, mood, bright)
     dx, dy = scene.rng(30, camera.index, frame).integers(0, NOISE_MARGIN, 2)
     noise = np.ascontiguousarray(view.noise[dy : dy + camera.height, dx : dx + camera.width])
     return np.asarray(cv2.add(picture, noise, dtype=cv2.CV_8U), np.uint8)
 
 
-def people_mask(camera: Camera, cast: Cast, now: Moment, frame: int) -> NDArray[np.int16]:
-    """Who is seen in each pixel (H, W); -1 where nobody is."""
-    mask = np.full((camera.height, camera.width), -1, dtype=np.int16)
-    for person, sprite in _far_to_near(camera, cast, now, frame).items():
-        height, width = sprite.cover.shape
-        part = mask[sprite.top : sprite.top + height, sprite.left : sprite.left + width]
-        part[sprite.cover > 0.5] = person
-    return mask
-
-
 def mood_of(scene: Scene, camera: Camera) -> Mood:
     return scene.moods[camera.index % len(scene.moods)]
 
 
-def _far_to_near(camera: Camera, cast: Cast, now: Moment, frame: int) -> dict[int, Sprite]:
+def far_to_near(camera: Camera, cast: Cast, now: Moment, frame: int) -> dict[int, Sprite]:
     """People do not overlap on the ground, so whoever stands nearer hides whoever stands farther away."""
     away = np.linalg.norm(cast.walks.xy[frame] - camera.centre[:2], axis=1)
     found = {}

@@ -22,70 +22,40 @@ _MULTIVIEWX_NAME = re.compile(r"Camera[0-9]+")
 class Layout:
     """The files of one dataset, by camera and by frame number.
 
-    `cameras` are the names of the image folders in natural order, which is the order of `viewNum`, and
-    `calibration_names` what their calibration calls them (CVLab1 ... IDIAP3 for WILDTRACK's C1 ... C7).
-    `intrinsic` belongs to images without lens distortion or with little (MultiviewX), `intrinsic_original` to
-    images as the cameras took them; one of the two may be empty. All are empty where `cameras_json` holds the
-    calibration. `annotations` is by the number of the frame
-    they belong to, which is `annotation_offset` less than the number in the file name.
+    `cameras` are the names of the image folders in natural order, which is the order of `viewNum`.
+    `annotations` is by the number of the frame they belong to, which is `annotation_offset` less than the
+    number in the file name.
     """
 
-    root: Path
     cameras: tuple[str, ...]
-    calibration_names: tuple[str, ...]
     images: Mapping[str, Mapping[int, Path]]
-    extrinsic: Mapping[str, Path]
-    intrinsic: Mapping[str, Path]
-    intrinsic_original: Mapping[str, Path]
+    calibrations: CalibrationFiles
     annotations: Mapping[int, Path]
     annotation_offset: int
-    cameras_json: Path | None = None
-
-    @property
-    def frames(self) -> tuple[int, ...]:
-        return tuple(self.images[self.cameras[0]])
 
 
 def find_layout(
     root: Path,
+    problems: ProblemList,
     images: Path | None = None,
     annotation_offset: int | None = None,
-    calibrated: bool = True,
     calibrations: Path | None = None,
     annotations: Path | None = None,
-    problems: ProblemList | None = None,
 ) -> Layout:
     """The parts of the dataset in the folder `root`.
 
     `images` is the folder with a folder per camera or an image per camera, seen from `root`; without it the
     published names are looked for. `calibrations` and `annotations` name these folders likewise.
     `annotation_offset` None means 1 for MultiviewX, whose annotation 00001 belongs to image 0000, and 0 for
-    everything else. With `calibrated` false no calibration is asked for.
+    everything else.
 
-    Raises FormatError with everything missing, surplus, ambiguous, or leading out of the folder; with a list
-    of `problems` given, adds to that instead, and the layout has what could be found.
+    Everything missing, surplus, ambiguous, or leading out of the folder is added to `problems`; the layout
+    has what could be found.
     """
-    found = ProblemList(root) if problems is None else problems
-    layout = _find_layout(root, images, annotation_offset, calibrated, calibrations, annotations, found)
-    if problems is None:
-        found.raise_if_any()
-    return layout
-
-
-def _find_layout(
-    root: Path,
-    images: Path | None,
-    annotation_offset: int | None,
-    calibrated: bool,
-    calibrations: Path | None,
-    annotations: Path | None,
-    problems: ProblemList,
-) -> Layout:
     dataset = DatasetFolder(root, problems)
     by_camera = _images(dataset, images)
     frames = _frames(by_camera, problems)
-    asked = calibrated and by_camera
-    files = find_calibrations(dataset, by_camera, calibrations) if asked else CalibrationFiles()
+    files = find_calibrations(dataset, by_camera, calibrations) if by_camera else CalibrationFiles()
     if files.names and not files.intrinsic and not files.intrinsic_original:
         problems.add("", "no intrinsic files: none of intrinsic_zero, intrinsic, intrinsic_original")
     annotation_files = _annotations(dataset, annotations)
@@ -95,16 +65,11 @@ def _find_layout(
         if frames and number - annotation_offset not in frames:
             problems.add("", f"no images of frame {number - annotation_offset}", path)
     return Layout(
-        root=dataset.root,
         cameras=tuple(by_camera),
-        calibration_names=tuple(files.names.get(camera, camera) for camera in by_camera),
         images=by_camera,
-        extrinsic=files.extrinsic,
-        intrinsic=files.intrinsic,
-        intrinsic_original=files.intrinsic_original,
+        calibrations=files,
         annotations={number - annotation_offset: path for number, path in annotation_files.items()},
         annotation_offset=annotation_offset,
-        cameras_json=files.cameras_json,
     )
 
 

@@ -33,11 +33,6 @@ class Manifest:
     files: Mapping[str, FileEntry] = field(default_factory=dict)
 
 
-def build_manifest(folder: Path, counts: Mapping[str, int], parameters: Mapping[str, Any]) -> Manifest:
-    """The manifest of everything in a folder but the manifest itself."""
-    return Manifest(counts, parameters, {name: _entry(folder / name) for name in _names(folder)})
-
-
 def manifest_json(manifest: Manifest) -> bytes:
     """The same manifest always gives the same bytes; raises ValueError for values JSON does not have."""
     content = {

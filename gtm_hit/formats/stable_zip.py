@@ -29,11 +29,10 @@ _MOST_WAITING = 8
 class StableZip:
     """An archive under way. Files are compressed beside whoever makes them: zlib lets go of Python's lock."""
 
-    def __init__(self, archive: zipfile.ZipFile, pool: ThreadPoolExecutor, prefix: str, compressed: bool):
+    def __init__(self, archive: zipfile.ZipFile, pool: ThreadPoolExecutor, prefix: str):
         self._archive = archive
         self._pool = pool
         self._prefix = f"{prefix}/" if prefix else ""
-        self._compressed = compressed
         self._names: set[str] = set()
         self._together: list[tuple[str, Path | bytes]] = []
         self._bytes = 0
@@ -68,7 +67,7 @@ class StableZip:
             info = zipfile.ZipInfo(name, _MOMENT)
             info.create_system = _UNIX
             info.external_attr = _PERMISSIONS
-            deflate = self._compressed and not name.lower().endswith(_COMPRESSED)
+            deflate = not name.lower().endswith(_COMPRESSED)
             info.compress_type = zipfile.ZIP_DEFLATED if deflate else zipfile.ZIP_STORED
             if isinstance(source, bytes):
                 self._archive.writestr(info, source)
@@ -79,12 +78,12 @@ class StableZip:
 
 
 @contextmanager
-def stable_zip(path: Path, prefix: str = "", compressed: bool = True) -> Iterator[StableZip]:
+def stable_zip(path: Path, prefix: str = "") -> Iterator[StableZip]:
     """An archive that appears under `path` complete or not at all; `prefix` is a folder name inside it."""
     with replacing(path) as stream, zipfile.ZipFile(stream, "w") as archive:
         pool = ThreadPoolExecutor(1, "zip")
         try:
-            made = StableZip(archive, pool, prefix, compressed)
+            made = StableZip(archive, pool, prefix)
             yield made
             made.finish()
         finally:

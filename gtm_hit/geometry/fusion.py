@@ -32,12 +32,10 @@ class Fused:
 
     positions : (N,) ids; -1 where no box shows the ground, or what it shows is off the grid
     xy : (N, 2) metres, the weighted mean of what the views show; NaN where none shows the ground
-    exact : (N,) the rectangles of the position are the boxes, to the pixel
     """
 
     positions: Ids
     xy: Floats
-    exact: Flags
 
 
 def feet(boxes: NDArray) -> Floats:
@@ -80,17 +78,15 @@ def fuse(table: RectangleTable, cameras: Sequence[Camera], boxes: Floats) -> Fus
     grid = table.grid
     xy = weighted_mean(*ground_points(cameras, boxes))
     positions = np.full(len(boxes), -1, dtype=np.int64)
-    exact = np.zeros(len(boxes), dtype=np.bool_)
     near = np.flatnonzero(_near(grid, xy))
     for start in range(0, near.size, PEOPLE_TOGETHER):
         rows = near[start : start + PEOPLE_TOGETHER]
         found, costs = _search(grid, grid.nearest(xy[rows]), _sides_cost(table, boxes[rows]))
         equal = costs == 0
-        exact[rows] = equal
         positions[rows[equal]] = _middle_of_equals(table, boxes[rows[equal]], found[equal])
         others = rows[~equal]
         positions[others] = _standing_alike(table, boxes[others], xy[others])
-    return Fused(positions, xy, exact)
+    return Fused(positions, xy)
 
 
 def _standing_alike(table: RectangleTable, boxes: Floats, xy: Floats) -> Ids:

@@ -60,23 +60,6 @@ class Summary:
     height: Distribution  # metres
 
 
-def summarise(
-    annotations: Annotations, frames: ArrayLike, seconds_per_frame: float, heights: ArrayLike = ()
-) -> Summary:
-    """`frames`: the numbers of all annotated frames, also of those where nobody is; `heights` in metres."""
-    tracks = tracks_of(annotations, frames)
-    return Summary(
-        frames=len(_ascending(frames)),
-        people=len(tracks.persons),
-        annotations=len(annotations),
-        people_per_frame=distribution(people_per_frame(annotations, frames)),
-        track_annotations=distribution(tracks.annotations),
-        track_path=distribution(tracks.path),
-        speed=distribution(speeds(annotations, frames, seconds_per_frame)),
-        height=distribution(heights),
-    )
-
-
 def distribution(values: ArrayLike) -> Distribution:
     array = np.asarray(values, dtype=np.float64)
     if not array.size:

@@ -42,7 +42,6 @@ class Switch:
 
     frame: int
     truth_person: int
-    found_person: int
     before: int  # identity the person was found under last
 
 
@@ -120,6 +119,6 @@ def _switches(events: pd.DataFrame, truth: Annotations, found: Annotations) -> l
         frames.tolist(), matched.Type, persons.tolist(), others.tolist(), strict=True
     ):
         if kind == "SWITCH":
-            switches.append(Switch(frame, person, other, last[person]))
+            switches.append(Switch(frame, person, last[person]))
         last[person] = other
     return switches

@@ -110,7 +110,6 @@ def preview(request: HttpRequest, slug: str, pk: int) -> HttpResponse:
         "job": job,
         "seen": job.result,
         "views": _views(dataset, job.result),
-        "names": [each["name"] for each in job.result["cameras"]],
     }
     return render(request, "staff/imports/calibration_preview.html", context)
 

@@ -70,7 +70,7 @@ export function markItem(pane, mark, selected, labels) {
  * The sign says the kind, so that labels stay short in a crowd; of a chosen mistake a word says it as well.
  * @param {Mark} mark @param {boolean} selected
  */
-export function labelOf(mark, selected) {
+function labelOf(mark, selected) {
   const { kind } = mark;
   const number = sideOf(mark).person;
   if (kind === "matched") return String(number);

@@ -14,7 +14,6 @@ export class MarksPanel {
    */
   constructor(store, names, select) {
     this._store = store;
-    this._names = names;
     this._select = select;
     this._counts = element("p", { className: "counts" });
     this._list = element("ul", { className: "people marks", role: "listbox", "aria-label": gettext("People") });

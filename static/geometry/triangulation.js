@@ -15,24 +15,11 @@ const CONVERGED = 1e-9; // metres
 const AXES = /** @type {const} */ (["x", "y"]);
 
 /**
- * The ground point that two clicks show: the least squares of the distances in pixels in both views.
- *
- * @param {AnyCamera} camera1 @param {number} u1 @param {number} v1
- * @param {AnyCamera} camera2 @param {number} u2 @param {number} v2
- * @returns {Intersection|null} null when neither click meets the ground, or the point is not in front of both cameras
- */
-export function intersectRays(camera1, u1, v1, camera2, u2, v2) {
-  return groundPoint([
-    { camera: camera1, u: u1, v: v1 },
-    { camera: camera2, u: u2, v: v2 },
-  ]);
-}
-
-/**
- * The same for any number of clicks, by damped Gauss-Newton from the best single click.
+ * The ground point that clicks show: the least squares of the distances in pixels in all views, by damped
+ * Gauss-Newton from the best single click.
  *
  * @param {Click[]} clicks
- * @returns {Intersection|null}
+ * @returns {Intersection|null} null when no click meets the ground, or the point is not in front of every camera
  */
 export function groundPoint(clicks) {
   let best = startingPoint(clicks);

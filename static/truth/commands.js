@@ -118,7 +118,7 @@ export function finishFrame(store, number, nobody) {
  * What the annotator says about a whole frame.
  * @param {Store} store @param {number} number @param {Flags} flags @returns {FlagEdit}
  */
-export function flagEdit(store, number, { done, nobody }) {
+function flagEdit(store, number, { done, nobody }) {
   const frame = store.frame(number);
   const before = { done: frame.done, nobody: frame.nobody };
   return { frame: number, flags: { before, after: { done, nobody } } };

@@ -13,7 +13,7 @@
  */
 export const NEAREST = 0.3; // metres; two bodies do not fit closer
 export const FASTEST = 3; // m/s
-export const MIDDLE = 0.5; // metres from the border of the area and of what is seen
+const MIDDLE = 0.5; // metres from the border of the area and of what is seen
 const WALKING = 2; // m/s, for somebody who was lost and is found again
 const LOST = 3; // frames until somebody lost counts as gone
 const FARTHEST = 3; // metres between the two ends of a path that may be one

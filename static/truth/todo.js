@@ -10,7 +10,7 @@ import { carriedOf } from "./annotation.js";
  * Why a frame is not finished: "yellow", "empty", "open" (nobody said it is done), or null.
  * @param {Store} store @param {number} number @param {boolean} judging @returns {Left}
  */
-export function leftIn(store, number, judging) {
+function leftIn(store, number, judging) {
   const { people, done, nobody, loaded } = store.frame(number);
   if (!loaded) return null;
   if (carriedOf(people).length) return "yellow";
@@ -46,7 +46,7 @@ export function nextTask(store, judging, asked = new Set()) {
  * People in exactly one frame although somebody is marked in the frames beside it.
  * @param {Store} store @returns {{person: number, number: number}[]}
  */
-export function singles(store) {
+function singles(store) {
   /** @type {Map<number, number[]>} */
   const seen = new Map();
   for (const number of store.numbers) {

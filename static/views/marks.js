@@ -10,7 +10,7 @@ import { HALO, INK, RIM } from "./styles.js";
 const LABEL_HEIGHT = 15;
 const HANDLE = 5;
 /** How far a mark reaches beyond its box: line width, handles, the double line. */
-export const MARGIN = 9;
+const MARGIN = 9;
 
 /**
  * What draws on a canvas; there is always one where the browser has canvases at all.

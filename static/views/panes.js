@@ -20,7 +20,6 @@ const [ABOVE_FEET, BELOW_FEET] = [0.25, 0.05]; // of a person's height, shown cl
  * @typedef {import("./pane.js").LaidOutPane} LaidOutPane
  * @typedef {import("./pane.js").Model} Model
  * @typedef {import("./pane.js").Person} Person
- * @typedef {import("./pane.js").Placed} Placed
  * @typedef {import("./pane.js").View} View
  * @typedef {import("./regions.js").Rectangle} Rectangle
  * @typedef {((name: "change", listener: (value: {frames: ReadonlySet<number>}) => void) => void)

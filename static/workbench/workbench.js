@@ -35,7 +35,6 @@ import { WarningsPanel } from "./warnings/warnings_panel.js";
 
 /**
  * @typedef {import("../saving/session.js").Session} Session
- * @typedef {import("../views/pane.js").Pane} Pane
  * @typedef {import("./actions.js").ActionTable} ActionTable
  * @typedef {import("./actions.js").Perform} Perform
  *

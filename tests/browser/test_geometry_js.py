@@ -13,8 +13,8 @@ from playwright.sync_api import Page
 
 from gtm_hit.geometry.camera import Camera, back_project, project
 from gtm_hit.geometry.cylinder import FootRule, rectangles
-from gtm_hit.geometry.footprint import footprint
 from gtm_hit.geometry.grid import Grid
+from tests.geometry.footprint import footprint
 from tests.geometry.rectangle_cases import PATH, UNEVEN_GRID
 from tests.geometry.scenes import (
     MULTIVIEWX_GRID,
@@ -30,7 +30,7 @@ pytestmark = pytest.mark.browser
 
 MODULES = """
     const [{ Camera, project, backProject }, { Grid }, { rectangle, rectangleInto }, ground, directions,
-      { intersectRays, groundPoint }] = await Promise.all(
+      { groundPoint }] = await Promise.all(
       ["camera", "grid", "rectangle", "ground", "directions", "triangulation"].map(
         (name) => import(`/static/geometry/${name}.js`)));
     const { gridOutline, gridLines, footprint } = ground;
@@ -283,10 +283,12 @@ def test_there_are_no_directions_behind_the_camera(module_page: Page) -> None:
     assert run(module_page, code, cameras=CAMERAS[:1], x=x, y=y) == [None, None]
 
 
+GROUND_POINT = "return groundPoint(given.clicks.map(([u, v], index) => ({ camera: cameras[index], u, v })));"
+
+
 def test_two_exact_clicks_give_the_ground_point_without_residuals(module_page: Page) -> None:
     clicks = [project(camera, [[3.0, 9.0, 0.0]])[0].tolist() for camera in (CAMERAS[0], CAMERAS[5])]
-    code = "return intersectRays(cameras[0], ...given.clicks[0], cameras[1], ...given.clicks[1]);"
-    found = run(module_page, code, cameras=[CAMERAS[0], CAMERAS[5]], clicks=clicks)
+    found = run(module_page, GROUND_POINT, cameras=[CAMERAS[0], CAMERAS[5]], clicks=clicks)
     assert (found["x"], found["y"]) == pytest.approx((3.0, 9.0), abs=1e-7)
     assert found["residuals"] == pytest.approx([0, 0], abs=1e-4)
 
@@ -295,8 +297,7 @@ def test_two_clicks_that_disagree_give_the_least_squares_in_pixels(module_page: 
     cameras = [CAMERAS[0], CAMERAS[5]]
     exact = np.array([project(camera, [[3.0, 9.0, 0.0]])[0] for camera in cameras])
     clicks = exact + np.array([[9, 0], [0, -6]])
-    code = "return intersectRays(cameras[0], ...given.clicks[0], cameras[1], ...given.clicks[1]);"
-    found = run(module_page, code, cameras=cameras, clicks=clicks.tolist())
+    found = run(module_page, GROUND_POINT, cameras=cameras, clicks=clicks.tolist())
 
     def cost(x: float, y: float) -> float:
         pixels = np.array([project(camera, [[x, y, 0.0]])[0] for camera in cameras])
@@ -309,5 +310,5 @@ def test_two_clicks_that_disagree_give_the_least_squares_in_pixels(module_page: 
 
 
 def test_two_clicks_into_the_sky_meet_no_ground(module_page: Page) -> None:
-    code = "return intersectRays(cameras[0], 900, -400, cameras[1], 900, -400);"
-    assert run(module_page, code, cameras=[CAMERAS[0], CAMERAS[5]]) is None
+    sky = [[900, -400], [900, -400]]
+    assert run(module_page, GROUND_POINT, cameras=[CAMERAS[0], CAMERAS[5]], clicks=sky) is None

@@ -9,9 +9,9 @@ import pytest
 
 from gtm_hit.demo.people import Cast, moment
 from gtm_hit.demo.pose import Arms, pose
-from gtm_hit.demo.view import people_mask
 from gtm_hit.demo.wardrobe import Hair
 from gtm_hit.geometry.camera import Camera
+from tests.demo.people_mask import people_mask
 
 FRAME = 6
 

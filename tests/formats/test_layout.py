@@ -3,12 +3,13 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from gtm_hit.formats.calibration.files import match_names
 from gtm_hit.formats.dataset_folder import natural_key
-from gtm_hit.formats.layout import find_layout
+from gtm_hit.formats.layout import Layout, find_layout
 from gtm_hit.formats.problems import FormatError, ProblemList
 
 WILDTRACK = ["CVLab1", "CVLab2", "CVLab3", "CVLab4", "IDIAP1", "IDIAP2", "IDIAP3"]
@@ -33,9 +34,20 @@ def make_dataset(
     return root
 
 
-def problems_of(root: Path, **options: object) -> list[str]:
+def layout_of(root: Path, **options: Any) -> Layout:
+    problems = ProblemList(root)
+    layout = find_layout(root, problems, **options)
+    problems.raise_if_any()
+    return layout
+
+
+def frames_of(layout: Layout) -> tuple[int, ...]:
+    return tuple(layout.images[layout.cameras[0]])
+
+
+def problems_of(root: Path, **options: Any) -> list[str]:
     with pytest.raises(FormatError) as caught:
-        find_layout(root, **options)  # type: ignore[arg-type]
+        layout_of(root, **options)
     return [str(problem) for problem in caught.value.relative_to(root).problems]
 
 
@@ -43,29 +55,32 @@ def problems_of(root: Path, **options: object) -> list[str]:
 
 
 def test_multiviewx_is_found_with_its_annotations_one_behind(shared_data: Path) -> None:
-    layout = find_layout(shared_data / "multiviewx")
+    layout = layout_of(shared_data / "multiviewx")
     assert layout.cameras == ("C1", "C2", "C3", "C4", "C5", "C6")
-    assert layout.calibration_names == tuple(f"Camera{number}" for number in range(1, 7))
-    assert layout.frames == tuple(range(10))
+    assert list(layout.calibrations.names.values()) == [f"Camera{number}" for number in range(1, 7)]
+    assert frames_of(layout) == tuple(range(10))
     assert layout.annotations[0].name == "00001.json"
-    assert layout.extrinsic["C6"].name == "extr_Camera6.xml"
+    assert layout.calibrations.extrinsic["C6"].name == "extr_Camera6.xml"
 
 
 def test_wildtrack_is_found_with_a_chosen_folder_of_images(shared_data: Path) -> None:
-    layout = find_layout(shared_data / "wildtrack", images=Path("original_frames"))
+    layout = layout_of(shared_data / "wildtrack", images=Path("original_frames"))
     assert layout.cameras == tuple(f"C{number}" for number in range(1, 8))
-    assert layout.calibration_names == tuple(WILDTRACK)
+    assert list(layout.calibrations.names.values()) == WILDTRACK
     assert layout.images["C7"][0].parts[-2:] == ("C7", "00000000.jpg")
-    assert layout.intrinsic["C5"].parts[-2:] == ("intrinsic_zero", "intr_IDIAP1.xml")
-    assert layout.intrinsic_original["C5"].parts[-2:] == ("intrinsic_original", "intr_IDIAP1.xml")
+    assert layout.calibrations.intrinsic["C5"].parts[-2:] == ("intrinsic_zero", "intr_IDIAP1.xml")
+    assert layout.calibrations.intrinsic_original["C5"].parts[-2:] == (
+        "intrinsic_original",
+        "intr_IDIAP1.xml",
+    )
 
 
 # Ways a dataset may look
 
 
 def test_files_are_given_by_camera_and_frame_number(tmp_path: Path) -> None:
-    layout = find_layout(make_dataset(tmp_path))
-    assert layout.frames == (0, 5)
+    layout = layout_of(make_dataset(tmp_path))
+    assert frames_of(layout) == (0, 5)
     assert layout.images["C2"][5] == tmp_path / "Image_subsets" / "C2" / "00000005.png"
     assert layout.annotations[5] == tmp_path / "annotations_positions" / "00000005.json"
     assert layout.annotation_offset == 0
@@ -73,15 +88,15 @@ def test_files_are_given_by_camera_and_frame_number(tmp_path: Path) -> None:
 
 def test_twelve_cameras_come_in_natural_order(tmp_path: Path) -> None:
     names = [f"C{number}" for number in range(1, 13)]
-    assert find_layout(make_dataset(tmp_path, reversed(names))).cameras == tuple(names)
+    assert layout_of(make_dataset(tmp_path, reversed(names))).cameras == tuple(names)
 
 
 def test_a_folder_with_one_image_per_camera_is_one_frame(tmp_path: Path) -> None:
     make_dataset(tmp_path, frames=())
     for camera in ("C1", "C2", "C3"):
         touch(tmp_path / "photos" / f"{camera}.jpg")
-    layout = find_layout(tmp_path, images=Path("photos"))
-    assert layout.frames == (0,)
+    layout = layout_of(tmp_path, images=Path("photos"))
+    assert frames_of(layout) == (0,)
     assert layout.images["C3"][0].name == "C3.jpg"
 
 
@@ -89,55 +104,51 @@ def test_images_may_be_chosen_outside_the_dataset(tmp_path: Path) -> None:
     make_dataset(tmp_path / "set", frames=())
     for camera in ("C1", "C2", "C3"):
         touch(tmp_path / "disk" / camera / "7.png")
-    assert find_layout(tmp_path / "set", images=tmp_path / "disk").frames == (7,)
+    assert frames_of(layout_of(tmp_path / "set", images=tmp_path / "disk")) == (7,)
 
 
 def test_one_calibration_file_may_hold_both_parts(tmp_path: Path) -> None:
     for camera in ("A", "B"):
         touch(tmp_path / "images" / camera / "1.png")
         touch(tmp_path / "calibrations" / f"{camera}.yml")
-    layout = find_layout(tmp_path)
-    assert layout.extrinsic == layout.intrinsic
-    assert layout.extrinsic["B"].name == "B.yml"
+    layout = layout_of(tmp_path)
+    assert layout.calibrations.extrinsic == layout.calibrations.intrinsic
+    assert layout.calibrations.extrinsic["B"].name == "B.yml"
 
 
 def test_both_parts_may_lie_in_one_folder(tmp_path: Path) -> None:
     touch(tmp_path / "images" / "A" / "1.png")
     touch(tmp_path / "calibrations" / "extr_A.xml")
     touch(tmp_path / "calibrations" / "intr_A.xml")
-    layout = find_layout(tmp_path)
-    assert (layout.extrinsic["A"].name, layout.intrinsic["A"].name) == ("extr_A.xml", "intr_A.xml")
+    layout = layout_of(tmp_path)
+    assert (layout.calibrations.extrinsic["A"].name, layout.calibrations.intrinsic["A"].name) == (
+        "extr_A.xml",
+        "intr_A.xml",
+    )
 
 
 def test_frame_numbers_may_follow_other_words(tmp_path: Path) -> None:
     make_dataset(tmp_path, frames=["frame_0012"])
-    assert find_layout(tmp_path).frames == (12,)
+    assert frames_of(layout_of(tmp_path)) == (12,)
 
 
 def test_hidden_files_and_other_kinds_are_passed_over(tmp_path: Path) -> None:
     make_dataset(tmp_path)
     for name in (".DS_Store", "._00000000.png", "notes.txt", "@eaDir/x.png"):
         touch(tmp_path / "Image_subsets" / "C1" / name)
-    assert find_layout(tmp_path).frames == (0, 5)
-
-
-def test_calibration_is_not_asked_for_when_it_comes_from_elsewhere(tmp_path: Path) -> None:
-    touch(tmp_path / "images" / "A" / "1.png")
-    layout = find_layout(tmp_path, calibrated=False)
-    assert layout.extrinsic == {}
-    assert layout.calibration_names == ("A",)
+    assert frames_of(layout_of(tmp_path)) == (0, 5)
 
 
 def test_an_offset_can_be_stated(tmp_path: Path) -> None:
     make_dataset(tmp_path, frames=["0", "1"])
     (tmp_path / "annotations_positions" / "0.json").unlink()
-    assert list(find_layout(tmp_path, annotation_offset=1).annotations) == [0]
+    assert list(layout_of(tmp_path, annotation_offset=1).annotations) == [0]
 
 
 def test_annotations_that_begin_at_one_are_not_shifted_without_being_told(tmp_path: Path) -> None:
     make_dataset(tmp_path, frames=["0", "1"])
     (tmp_path / "annotations_positions" / "0.json").unlink()
-    assert list(find_layout(tmp_path).annotations) == [1]
+    assert list(layout_of(tmp_path).annotations) == [1]
 
 
 # What is wrong with a dataset
@@ -252,13 +263,13 @@ def test_links_that_stay_inside_are_followed(tmp_path: Path) -> None:
     make_dataset(tmp_path)
     (tmp_path / "Image_subsets").rename(tmp_path / "kept")
     (tmp_path / "Image_subsets").symlink_to("kept")
-    assert find_layout(tmp_path).frames == (0, 5)
+    assert frames_of(layout_of(tmp_path)) == (0, 5)
 
 
 def test_a_dataset_may_itself_be_reached_through_a_link(tmp_path: Path) -> None:
     make_dataset(tmp_path / "set")
     (tmp_path / "link").symlink_to(tmp_path / "set")
-    assert find_layout(tmp_path / "link").frames == (0, 5)
+    assert frames_of(layout_of(tmp_path / "link")) == (0, 5)
 
 
 @pytest.mark.parametrize("target", ["00000010.png", "nothing.png"])
@@ -278,12 +289,12 @@ def test_calibrations_and_annotations_may_be_chosen_anywhere(tmp_path: Path) -> 
     make_dataset(tmp_path / "set")
     for name in ("calibrations", "annotations_positions"):
         (tmp_path / "set" / name).rename(tmp_path / f"my-{name}")
-    layout = find_layout(
+    layout = layout_of(
         tmp_path / "set",
         calibrations=tmp_path / "my-calibrations",
         annotations=tmp_path / "my-annotations_positions",
     )
-    assert layout.extrinsic["C1"].parent.parent.name == "my-calibrations"
+    assert layout.calibrations.extrinsic["C1"].parent.parent.name == "my-calibrations"
     assert list(layout.annotations) == [0, 5]
 
 
@@ -296,7 +307,7 @@ def test_a_caller_may_collect_the_problems_and_take_what_was_found(tmp_path: Pat
     make_dataset(tmp_path)
     (tmp_path / "Image_subsets" / "C2" / "00000005.png").unlink()
     problems = ProblemList(tmp_path)
-    layout = find_layout(tmp_path, problems=problems)
+    layout = find_layout(tmp_path, problems)
     assert [str(problem.reason) for problem in problems.found] == [
         "no image of 1 frames other cameras have: 5"
     ]

@@ -28,9 +28,9 @@ def peak():
     return int(status.partition("VmHWM:")[2].split()[0])
 
 reader = {
-    "coco": lambda: read_coco(path, repeated=True),
-    "csv": lambda: read_csv(path, repeated=True),
-    "mot": lambda: read_mot(path, range(1, 2**31), repeated=True),
+    "coco": lambda: read_coco(path),
+    "csv": lambda: read_csv(path),
+    "mot": lambda: read_mot(path, range(1, 2**31)),
     "text": lambda: frame_column_row.read(path, persons=None, repeated=True),
 }[sys.argv[2]]
 before = peak()

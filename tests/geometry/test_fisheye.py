@@ -22,8 +22,8 @@ from gtm_hit.geometry.camera import (
     undistorted,
 )
 from gtm_hit.geometry.cylinder import FootRule, rectangles
-from gtm_hit.geometry.footprint import footprint
 from gtm_hit.geometry.table import table_digest
+from tests.geometry.footprint import footprint
 from tests.geometry.scenes import PERSON, WILDTRACK_GRID, mirrored, wildtrack_cameras
 
 LENS = np.array([0.08, -0.02, 0.004, -0.0006])

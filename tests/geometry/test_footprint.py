@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from gtm_hit.geometry.camera import Camera, project
-from gtm_hit.geometry.footprint import footprint
 from gtm_hit.geometry.grid import Grid
+from tests.geometry.footprint import footprint
 from tests.geometry.scenes import WILDTRACK_GRID, mirrored, mirrored_grid, wildtrack_cameras
 
 

@@ -47,15 +47,6 @@ def test_views_are_counted_per_view_and_per_annotation() -> None:
     assert seen.mean_views == 1.5
 
 
-def test_the_summary_holds_what_a_paper_prints() -> None:
-    summary = statistics.summarise(walkers(), FRAMES, 0.5, heights=[1.7, 1.8, 1.9])
-    assert (summary.frames, summary.people, summary.annotations) == (5, 2, 6)
-    assert summary.people_per_frame.mean == pytest.approx(1.2)
-    assert summary.track_annotations.median == 3.0
-    assert summary.speed.most == 4.0
-    assert summary.height.mean == pytest.approx(1.8)
-
-
 def test_a_distribution_is_described_by_its_percentiles() -> None:
     shape = statistics.distribution(np.arange(101))
     assert (shape.least, shape.p05, shape.median, shape.p95, shape.most) == (0, 5, 50, 95, 100)
@@ -67,10 +58,11 @@ def test_nothing_has_no_distribution() -> None:
     assert shape.count == 0 and math.isnan(shape.mean) and math.isnan(shape.most)
 
 
-def test_an_empty_layer_has_a_summary() -> None:
-    summary = statistics.summarise(Annotations([], [], []), FRAMES, 0.5)
-    assert (summary.frames, summary.people, summary.annotations) == (5, 0, 0)
-    assert summary.people_per_frame.most == 0.0
+def test_an_empty_layer_has_frames_and_no_tracks() -> None:
+    nobody = Annotations([], [], [])
+    assert statistics.people_per_frame(nobody, FRAMES).tolist() == [0] * 5
+    assert len(statistics.tracks_of(nobody, FRAMES).persons) == 0
+    assert len(statistics.speeds(nobody, FRAMES, 0.5)) == 0
 
 
 def test_an_annotated_frame_that_is_not_among_the_frames_is_refused() -> None:

@@ -117,7 +117,7 @@ def two_people_exchanging_names() -> tuple[Annotations, Annotations]:
 
 def test_every_person_going_on_under_another_name_is_reported_with_frame_and_names() -> None:
     result = tracking.evaluate(*two_people_exchanging_names())
-    assert result.switches == [tracking.Switch(10, 1, 32, 31), tracking.Switch(10, 2, 31, 32)]
+    assert result.switches == [tracking.Switch(10, 1, 31), tracking.Switch(10, 2, 32)]
 
 
 def test_the_hand_worked_case_gives_the_hand_worked_scores() -> None:

@@ -14,7 +14,7 @@ from typing import Any, BinaryIO
 from gtm_hit.formats.annotations.coco_categories import Categories
 from gtm_hit.formats.annotations.delimited_text import MOST_WHOLE
 from gtm_hit.formats.annotations.json_lists import read_object
-from gtm_hit.formats.files import read_source, replacing
+from gtm_hit.formats.files import read_source
 from gtm_hit.formats.problems import ProblemList, shown
 from gtm_hit.formats.strict_json import json_text
 
@@ -54,23 +54,18 @@ class CocoFile:
     boxes: tuple[CocoBox, ...]
 
 
-def read_coco(path: Path, repeated: bool = False) -> CocoFile:
-    """Raises FormatError, as `parse_coco`."""
-    return _parsed(json_text(read_source(path, MOST_BYTES), str(path)), str(path), repeated)
-
-
-def parse_coco(data: bytes, path: str, repeated: bool = False) -> CocoFile:
+def read_coco(path: Path) -> CocoFile:
     """Images and the boxes of people; boxes of other categories are left out.
 
-    With `repeated`, people twice in an image are left to the caller.
+    People twice in an image are left to the caller.
 
     Raises FormatError with everything wrong: keys missing or of another type, ids used twice, boxes of no
-    image, of no category or without area, no category of people, a person twice in an image.
+    image, of no category or without area, no category of people.
     """
-    return _parsed(json_text(data, path), path, repeated)
+    return _parsed(json_text(read_source(path, MOST_BYTES), str(path)), str(path))
 
 
-def _parsed(text: str, path: str, repeated: bool) -> CocoFile:
+def _parsed(text: str, path: str) -> CocoFile:
     problems = ProblemList(path)
     images: list[CocoImage] = []
     boxes: list[CocoBox] = []
@@ -92,30 +87,18 @@ def _parsed(text: str, path: str, repeated: bool) -> CocoFile:
     problems.raise_if_any()
     categories = Categories.of(content.get("categories"))
     read_object(text, path, {"images": lambda _index, _entry: None, "annotations": take_box})
-    _tell_wrong_ids(images, boxes, repeated, problems)
+    _tell_wrong_ids(images, boxes, problems)
     problems.raise_if_any()
     return CocoFile(tuple(images), tuple(boxes))
 
 
-def _tell_wrong_ids(
-    images: list[CocoImage], boxes: list[CocoBox], repeated: bool, problems: ProblemList
-) -> None:
+def _tell_wrong_ids(images: list[CocoImage], boxes: list[CocoBox], problems: ProblemList) -> None:
     _tell_repeated("images", (image.id for image in images), problems)
     _tell_repeated("annotations", (box.id for box in boxes), problems)
-    if not repeated:
-        people_of_images = ((box.image, box.person) for box in boxes if box.person is not None)
-        _tell_repeated("images and people", people_of_images, problems)
     known = {image.id for image in images}
     for box in boxes:
         if box.image not in known:
             problems.add(f"annotation {box.id}", f"image_id {box.image} is no image of this file")
-
-
-def write_coco(path: Path, images: Iterable[CocoImage], boxes: Iterable[CocoBox]) -> None:
-    with replacing(path) as stream:
-        writer = CocoWriter(stream)
-        writer.boxes(boxes)
-        writer.finish(images)
 
 
 class CocoWriter:

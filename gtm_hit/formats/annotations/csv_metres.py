@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gtm_hit.formats.annotations.delimited_text import real, records, short, tell_repeated, whole
-from gtm_hit.formats.files import read_source, replacing
+from gtm_hit.formats.annotations.delimited_text import real, records, short, whole
+from gtm_hit.formats.files import read_source
 from gtm_hit.formats.problems import ProblemList, shown
 
 MOST_BYTES = 512 * 2**20
@@ -37,18 +36,18 @@ class GroundPoints:
     lines: NDArray[np.int64] | None = None
 
 
-def read_csv(path: Path, repeated: bool = False) -> GroundPoints:
+def read_csv(path: Path) -> GroundPoints:
     """Raises FormatError, as `parse_csv`."""
-    return parse_csv(read_source(path, MOST_BYTES), str(path), repeated)
+    return parse_csv(read_source(path, MOST_BYTES), str(path))
 
 
-def parse_csv(data: bytes, path: str, repeated: bool = False) -> GroundPoints:
+def parse_csv(data: bytes, path: str) -> GroundPoints:
     """The people of a CSV file; the first line names the columns, in any order.
 
-    With `repeated`, people twice in a frame are left to the caller.
+    People twice in a frame are left to the caller.
 
     Raises FormatError naming every line that is wrong: columns missing or unknown, values that are not finite
-    numbers, negative frames or persons, heights that are not positive, a person twice in a frame.
+    numbers, negative frames or persons, heights that are not positive.
     """
     problems = ProblemList(path)
     rows = records(data)
@@ -64,8 +63,6 @@ def parse_csv(data: bytes, path: str, repeated: bool = False) -> GroundPoints:
         values.extend(_record(dict(zip(names, words, strict=True)), number, problems))
     table = np.frombuffer(values, dtype=np.float64).reshape(-1, 5)
     frames, persons = table[:, 0].astype(np.int64), table[:, 1].astype(np.int64)
-    if "person" in names and not repeated:
-        tell_repeated(frames, persons, numbers, problems)
     problems.raise_if_any()
     return GroundPoints(
         frames,
@@ -76,25 +73,13 @@ def parse_csv(data: bytes, path: str, repeated: bool = False) -> GroundPoints:
     )
 
 
-def write_csv(
-    path: Path, tables: Iterable[GroundPoints], persons: bool = True, heights: bool = False
-) -> None:
-    """Writes tables one after the other; all of them need the columns asked for."""
-    with replacing(path) as stream:
-        stream.write(csv_header(persons, heights))
-        for table in tables:
-            stream.write(csv_lines(table, persons, heights))
-
-
-def csv_header(persons: bool = True, heights: bool = False) -> bytes:
-    names = ["frame", *(["person"] if persons else []), "x", "y", *(["height"] if heights else [])]
+def csv_header(heights: bool = False) -> bytes:
+    names = ["frame", "person", "x", "y", *(["height"] if heights else [])]
     return (",".join(names) + "\n").encode()
 
 
-def csv_lines(table: GroundPoints, persons: bool = True, heights: bool = False) -> bytes:
-    columns: list[list[str]] = [list(map(str, table.frames.tolist()))]
-    if persons:
-        columns.append(list(map(str, _present(table.persons).tolist())))
+def csv_lines(table: GroundPoints, heights: bool = False) -> bytes:
+    columns = [list(map(str, ids.tolist())) for ids in (table.frames, _present(table.persons))]
     columns += [[short(value) for value in column] for column in table.xy.T.tolist()]
     if heights:
         # NaN is the only number that differs from itself.

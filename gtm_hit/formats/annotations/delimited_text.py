@@ -5,10 +5,7 @@ from __future__ import annotations
 import io
 import math
 import re
-from collections.abc import Iterator, Sequence
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Iterator
 
 from gtm_hit.formats.problems import ProblemList, shown
 
@@ -55,16 +52,3 @@ def short(value: float) -> str:
     """A number with six decimals at most, whole numbers with none: micrometres, millionths of a pixel."""
     rounded = round(value, 6)
     return str(int(rounded)) if rounded.is_integer() else repr(rounded)
-
-
-def tell_repeated(
-    frames: NDArray[np.int64], persons: NDArray[np.int64], numbers: Sequence[int], problems: ProblemList
-) -> None:
-    """Every row whose person is already in its frame."""
-    if problems:
-        return  # what stands in for wrong values would look like repetitions
-    first: dict[tuple[int, int], int] = {}
-    for frame, person, number in zip(frames.tolist(), persons.tolist(), numbers, strict=True):
-        earlier = first.setdefault((frame, person), number)
-        if earlier != number:
-            problems.add(f"line {number}", f"person {person} is already in frame {frame} on line {earlier}")

@@ -9,15 +9,14 @@ from __future__ import annotations
 import io
 import re
 from array import array
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gtm_hit.formats.annotations.delimited_text import tell_repeated
-from gtm_hit.formats.files import read_source, write_bytes
+from gtm_hit.formats.files import read_source
 from gtm_hit.formats.problems import ProblemList, shown
 
 MOST_BYTES = 512 * 2**20
@@ -64,14 +63,10 @@ def read(
     table = np.frombuffer(values, dtype=np.int64).reshape(-1, expected)
     identified = expected == 4 and persons is not False
     if identified and not repeated:
-        tell_repeated(table[:, 0], table[:, 3], numbers, problems)
+        _tell_repeated(table[:, 0], table[:, 3], numbers, problems)
     problems.raise_if_any()
     places = np.frombuffer(numbers, dtype=np.int64)
     return FrameColumnRow(table[:, 0], table[:, 1], table[:, 2], table[:, 3] if identified else None, places)
-
-
-def write(path: Path, table: FrameColumnRow) -> None:
-    write_bytes(path, lines(table))
 
 
 def lines(table: FrameColumnRow) -> bytes:
@@ -117,3 +112,14 @@ def _whole(place: str, name: str, word: bytes, problems: ProblemList) -> int:
     text = shown(word.decode("ascii", "backslashreplace"))
     problems.add(place, f"{name} is not a whole number from 0 to {MOST}: {text}")
     return 0
+
+
+def _tell_repeated(frames: Ids, persons: Ids, numbers: Sequence[int], problems: ProblemList) -> None:
+    """Every row whose person is already in its frame."""
+    if problems:
+        return  # what stands in for wrong values would look like repetitions
+    first: dict[tuple[int, int], int] = {}
+    for frame, person, number in zip(frames.tolist(), persons.tolist(), numbers, strict=True):
+        earlier = first.setdefault((frame, person), number)
+        if earlier != number:
+            problems.add(f"line {number}", f"person {person} is already in frame {frame} on line {earlier}")

@@ -11,7 +11,7 @@ its number among the dataset's frame numbers. Pixels are not shifted: `left` is 
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,10 +23,9 @@ from gtm_hit.formats.annotations.delimited_text import (
     real,
     records,
     short,
-    tell_repeated,
     whole,
 )
-from gtm_hit.formats.files import read_source, replacing
+from gtm_hit.formats.files import read_source
 from gtm_hit.formats.problems import ProblemList
 
 MOST_BYTES = 512 * 2**20
@@ -57,18 +56,18 @@ class MotTable:
     lines: NDArray[np.int64] | None = None
 
 
-def read_mot(path: Path, numbers: Sequence[int], repeated: bool = False) -> MotTable:
+def read_mot(path: Path, numbers: Sequence[int]) -> MotTable:
     """Raises FormatError, as `parse_mot`."""
-    return parse_mot(read_source(path, MOST_BYTES), str(path), numbers, repeated)
+    return parse_mot(read_source(path, MOST_BYTES), str(path), numbers)
 
 
-def parse_mot(data: bytes, path: str, numbers: Sequence[int], repeated: bool = False) -> MotTable:
+def parse_mot(data: bytes, path: str, numbers: Sequence[int]) -> MotTable:
     """The rows of a file with 6, 7, 9 or 10 values a line; `numbers` are the dataset's frames in order.
 
-    With `repeated`, people twice in a frame are left to the caller.
+    People twice in a frame are left to the caller.
 
     Raises FormatError naming every line that is wrong: values missing or not finite, frames the dataset does
-    not have, ids below 1 other than -1, boxes without area, neither box nor place, a person twice in a frame.
+    not have, ids below 1 other than -1, boxes without area, neither box nor place.
     """
     problems = ProblemList(path)
     lines, values = array("q"), array("d")
@@ -87,8 +86,6 @@ def parse_mot(data: bytes, path: str, numbers: Sequence[int], repeated: bool = F
     if identified and not problems:  # what stands in for wrong ids is -1 too
         for row in np.flatnonzero(persons < 0):
             problems.add(f"line {lines[row]}", "id is -1 while other lines have one")
-        if not repeated:
-            tell_repeated(frames, persons, lines, problems)
     problems.raise_if_any()
     return MotTable(
         frames,
@@ -100,29 +97,16 @@ def parse_mot(data: bytes, path: str, numbers: Sequence[int], repeated: bool = F
     )
 
 
-def write_mot(path: Path, tables: Iterable[MotTable], numbers: Sequence[int]) -> None:
-    """Writes tables one after the other; `numbers` are the dataset's frames in order.
-
-    Tables with a place are written as ground, without identities as detections, all others as ground truth.
-    Raises ValueError when tables differ in this, KeyError for a frame the dataset does not have.
-    """
-    places = places_of(numbers)
-    kinds = set()
-    with replacing(path) as stream:
-        for table in tables:
-            kinds.add((table.world is None, table.persons is None))
-            if len(kinds) > 1:
-                raise ValueError("tables with and without places or identities do not go into one file")
-            stream.write(mot_lines(table, places))
-
-
 def places_of(numbers: Sequence[int]) -> dict[int, int]:
     """What the benchmark calls the dataset's frames: 1, 2 … in order."""
     return {number: place for place, number in enumerate(numbers, start=1)}
 
 
 def mot_lines(table: MotTable, places: Mapping[int, int]) -> bytes:
-    """The lines of one table, of the kind `write_mot` says."""
+    """The lines of one table.
+
+    With a place they are ground, without identities detections, otherwise ground truth.
+    """
     frames = [str(places[number]) for number in table.frames.tolist()]
     return "".join(",".join(row) + "\n" for row in zip(*_columns(table, frames), strict=True)).encode()
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import chain
@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from gtm_hit.formats.files import read_source, write_bytes
-from gtm_hit.formats.problems import FormatError, ProblemList, shown
+from gtm_hit.formats.problems import ProblemList, shown
 from gtm_hit.formats.strict_json import parse_json
 from gtm_hit.geometry.grid import Grid
 
@@ -51,22 +51,7 @@ class FrameAnnotations:
     people: list[PersonPosition]
 
 
-def read_frames(
-    paths: Iterable[Path], grid: Grid, cameras: int, views_required: bool = True
-) -> Iterator[FrameAnnotations]:
-    """The frames of files, one at a time; raises FormatError for all bad files together after the last."""
-    problems = ProblemList("")
-    for path in paths:
-        try:
-            yield read_frame(path, grid, cameras, views_required)
-        except FormatError as error:
-            problems.extend(error.problems)
-    problems.raise_if_any()
-
-
-def read_frame(
-    path: Path, grid: Grid, cameras: int, views_required: bool = True, repeated: bool = False
-) -> FrameAnnotations:
+def read_frame(path: Path, grid: Grid, cameras: int, repeated: bool = False) -> FrameAnnotations:
     """The people of one file; the frame number is the one its name ends with.
 
     With `repeated`, people twice in the file are left to the caller.
@@ -78,19 +63,9 @@ def read_frame(
     problems = ProblemList(path)
     if match is None:
         problems.add("", "the name does not end with a frame number of at most 9 digits")
-    people = _people(data, grid, cameras, views_required, problems, repeated)
+    people = _people(data, grid, cameras, problems, repeated)
     problems.raise_if_any()
     return FrameAnnotations(int(match[1]) if match else -1, people)
-
-
-def parse_people(
-    data: bytes, path: str, grid: Grid, cameras: int, views_required: bool = True
-) -> list[PersonPosition]:
-    """The people of one frame's JSON; `path` is what problems are reported under."""
-    problems = ProblemList(path)
-    people = _people(data, grid, cameras, views_required, problems)
-    problems.raise_if_any()
-    return people
 
 
 def frame_json(people: Iterable[PersonPosition], cameras: int) -> bytes:
@@ -138,9 +113,9 @@ def joined(people: Sequence[str]) -> bytes:
     return ("[\n" + ",\n".join(people) + "\n]" if people else "[]").encode()
 
 
-def write_frame(folder: Path, frame: FrameAnnotations, cameras: int, digits: int = 8) -> Path:
-    """Writes `<folder>/<number>.json`; WILDTRACK has 8 digits, MultiviewX 5."""
-    path = folder / f"{frame.number:0{digits}d}.json"
+def write_frame(folder: Path, frame: FrameAnnotations, cameras: int) -> Path:
+    """Writes `<folder>/<number>.json`; with 8 digits, as WILDTRACK has them."""
+    path = folder / f"{frame.number:08d}.json"
     write_bytes(path, frame_json(frame.people, cameras))
     return path
 
@@ -170,9 +145,8 @@ def _people(
     data: bytes,
     grid: Grid,
     cameras: int,
-    views_required: bool,
     problems: ProblemList,
-    repeated: bool = False,
+    repeated: bool,
 ) -> list[PersonPosition]:
     entries = _entries(data, problems)
     every = _all_boxes(entries, cameras)
@@ -188,7 +162,7 @@ def _people(
         if every is not None:
             boxes: np.ndarray | None = every[index]
         else:
-            boxes = _boxes(entry, cameras, place, problems) if views_required or "views" in entry else None
+            boxes = _boxes(entry["views"], cameras, place, problems) if "views" in entry else None
         if not repeated and person >= 0 and (first := first_at.setdefault(person, index)) != index:
             problems.add(place, f"person {person} is already in entry {first}")
         extra = {key: value for key, value in entry.items() if key not in _PERSON_KEYS}
@@ -235,13 +209,10 @@ def _all_boxes(entries: list[Any], cameras: int) -> np.ndarray | None:
     return boxes if in_order and (boxes[..., :2] <= boxes[..., 2:]).all() else None
 
 
-def _boxes(entry: Mapping[str, Any], cameras: int, place: str, problems: ProblemList) -> np.ndarray | None:
-    views = entry.get("views")
+def _boxes(views: Any, cameras: int, place: str, problems: ProblemList) -> np.ndarray | None:
     if not isinstance(views, list) or len(views) != cameras:
         given = f"{len(views)} views" if isinstance(views, list) else f"{shown(views)} as views"
-        problems.add(
-            place, f"has {given} instead of a list of {cameras}" if "views" in entry else "has no views"
-        )
+        problems.add(place, f"has {given} instead of a list of {cameras}")
         return None
     boxes: list[tuple[int, ...] | None] = [None] * cameras
     for index, view in enumerate(views):

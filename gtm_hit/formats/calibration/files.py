@@ -19,8 +19,10 @@ _NUMBER = re.compile(r"([0-9]{1,18})$")
 
 @dataclass(frozen=True)
 class CalibrationFiles:
-    """Files by camera, `names` being what the files call the cameras.
+    """Files by camera, `names` being what the files call the cameras (CVLab1 for WILDTRACK's C1).
 
+    `intrinsic` belongs to images without lens distortion or with little (MultiviewX), `intrinsic_original` to
+    images as the cameras took them; one of the two may be empty.
     Or `cameras_json` alone, which holds all cameras under names of its own.
     """
 

@@ -142,18 +142,6 @@ def extrinsic_xml(extrinsic: Extrinsic, style: Style) -> bytes:
     )
 
 
-def intrinsic_yaml(intrinsic: Intrinsic) -> bytes:
-    data = _yaml(
-        ("camera_matrix", np.reshape(intrinsic.matrix, (3, 3))),
-        ("distortion_coefficients", np.reshape(intrinsic.distortion, (-1, 1))),
-    )
-    return data + b"fisheye_model: 1\n" if intrinsic.model is CameraModel.FISHEYE else data
-
-
-def extrinsic_yaml(extrinsic: Extrinsic) -> bytes:
-    return _yaml(("rvec", np.reshape(extrinsic.rvec, (3, 1))), ("tvec", np.reshape(extrinsic.tvec, (3, 1))))
-
-
 def _find(nodes: Sequence[StoredNode], names: Sequence[str], problems: ProblemList) -> StoredNode | None:
     for name in names:
         found = [node for node in nodes if _plain(node.name) == name]
@@ -255,14 +243,3 @@ def _xml(*nodes: tuple[str, np.ndarray, Style]) -> bytes:
                 f"  <dt>d</dt>\n  <data>\n    {text}</data></{name}>\n"
             )
     return "".join([*parts, "</opencv_storage>\n"]).encode()
-
-
-def _yaml(*nodes: tuple[str, np.ndarray]) -> bytes:
-    parts = ["%YAML:1.0\n---\n"]
-    for name, values in nodes:
-        rows, cols = values.shape
-        text = ", ".join(map(repr, values.ravel().tolist()))
-        parts.append(
-            f"{name}: !!opencv-matrix\n   rows: {rows}\n   cols: {cols}\n   dt: d\n   data: [ {text} ]\n"
-        )
-    return "".join(parts).encode()

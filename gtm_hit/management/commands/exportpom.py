@@ -6,7 +6,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError
 
-from gtm_hit.formats.pom.writing import PomHeader, write_pom
+from gtm_hit.formats.pom import PomHeader, write_pom
 from gtm_hit.management.lookups import dataset_named
 from gtm_hit.management.progress import ProgressLine
 from gtm_hit.ops.ground.coverage import table

@@ -11,7 +11,7 @@ from PIL import ImageFont
 ZOOM = 3  # pixels of the picture for one of the figure
 
 
-def png(figure: str, zoom: float = ZOOM) -> bytes:
+def png(figure: str) -> bytes:
     """PNG of one of our SVGs: black on white, also where the machine has no fonts."""
     import resvg_py  # only whoever wants a picture needs it
 
@@ -23,7 +23,7 @@ def png(figure: str, zoom: float = ZOOM) -> bytes:
         return resvg_py.svg_to_bytes(
             svg_string=plain,
             background="#fff",
-            zoom=zoom,
+            zoom=ZOOM,
             font_files=[font.name],
             sans_serif_family=family,
         )

@@ -20,7 +20,6 @@ from gtm_hit.formats.calibration.wildtrack_xml import (
     read_extrinsic,
     read_intrinsic,
 )
-from gtm_hit.formats.layout import Layout
 from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.geometry.camera import CalibrationError, Camera, Floats, undistort_maps, undistorted
 from gtm_hit.geometry.grid import Grid
@@ -46,19 +45,6 @@ class View:
 
 
 def read_views(
-    layout: Layout, sizes: Mapping[str, tuple[int, int]], unit: str, undistort: bool, problems: ProblemList
-) -> list[View]:
-    """The cameras in order; those with problems are left out."""
-    files = CalibrationFiles(
-        extrinsic=layout.extrinsic,
-        intrinsic=layout.intrinsic,
-        intrinsic_original=layout.intrinsic_original,
-        cameras_json=layout.cameras_json,
-    )
-    return views_of(files, layout.cameras, sizes, unit, undistort, problems)
-
-
-def views_of(
     files: CalibrationFiles,
     names: Sequence[str],
     sizes: Mapping[str, tuple[int, int]],

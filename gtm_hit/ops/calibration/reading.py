@@ -14,7 +14,7 @@ from gtm_hit.formats.files import write_bytes
 from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Dataset
-from gtm_hit.ops.calibration.cameras import tell_wrong_unit, views_of
+from gtm_hit.ops.calibration.cameras import read_views, tell_wrong_unit
 from gtm_hit.ops.files import sources
 
 MOST_BYTES = 10_000_000  # of an upload
@@ -33,7 +33,7 @@ def read_replacement(dataset: Dataset, path: Path, unit: str = "m") -> list[Came
         for name, width, height in dataset.cameras.values_list("name", "width", "height")
     }
     files = _files(path, names, problems)
-    views = views_of(files, names, sizes, unit, undistort=False, problems=problems)
+    views = read_views(files, names, sizes, unit, undistort=False, problems=problems)
     cameras = [view.camera for view in views]
     for camera in cameras:
         if dataset.undistorted and camera.has_lens:

@@ -77,7 +77,7 @@ def read_annotations(
     for done, (number, path) in enumerate(sorted(paths.items()), start=1):
         try:
             # Positions are the truth; a file without boxes loses nothing.
-            people = read_frame(path, grid, cameras, views_required=False).people
+            people = read_frame(path, grid, cameras).people
         except FormatError as error:
             problems.extend(error.problems)
         else:

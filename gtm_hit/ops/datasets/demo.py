@@ -49,7 +49,6 @@ class DemoError(OperationError, ValueError):
 class Demo:
     dataset: Dataset
     frames_added: int
-    batches_added: int
 
 
 def make_demo(
@@ -75,7 +74,8 @@ def make_demo(
         added = scene.frame_count
     elif not Layer.objects.filter(dataset=dataset, name=TRUTH, hidden=True).exists():
         raise DemoError(f"Dataset {slug} is there already and is no demo scene.")
-    return Demo(dataset, added, make_batches(dataset))
+    make_batches(dataset)
+    return Demo(dataset, added)
 
 
 def _make(slug: str, scene: Scene, progress: Progress) -> Dataset:

@@ -117,7 +117,8 @@ def _read(options: ImportOptions, progress: Progress, problems: ProblemList) -> 
     known = list(existing.cameras.all()) if existing else []
     sizes = camera_sizes(layout.images, {row.name: (row.width, row.height) for row in known}, problems)
     progress("reading image headers", 1, 1)
-    views = read_views(layout, sizes, options.unit, options.undistort, problems)
+    files = layout.calibrations
+    views = read_views(files, layout.cameras, sizes, options.unit, options.undistort, problems)
     cameras = [view.camera for view in views]
     tell_too_many(dataset, len(layout.cameras), problems)
     if len(cameras) == len(layout.cameras):
@@ -164,11 +165,11 @@ def _layout(
     told = existing is not None or "annotation_offset" in {**preset, **options.values}
     layout = find_layout(
         options.folder,
+        problems,
         images=options.images,
         annotation_offset=dataset.annotation_offset if told else None,
         calibrations=options.calibrations,
         annotations=options.annotations,
-        problems=problems,
     )
     dataset.annotation_offset = layout.annotation_offset
     if existing is None and layout.annotations and "annotation_digits" not in {**preset, **options.values}:

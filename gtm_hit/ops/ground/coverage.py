@@ -30,14 +30,12 @@ class Coverage:
 
     digest : SHA-256 of the picture, hex
     counts : positions seen by exactly 0, 1 … N cameras
-    per_camera : positions each camera sees, by index
     middles : (N, 2) metres, the middle of what each camera sees; NaN for a camera that sees nothing
     picture : PNG, one pixel per position; the longer side of the grid runs to the right (see GroundMap)
     """
 
     digest: str
     counts: list[int]
-    per_camera: list[int]
     middles: np.ndarray
     picture: bytes
 
@@ -85,17 +83,15 @@ def _coverage(path: Path) -> Coverage:
     grid = found.grid
     seen = np.zeros(grid.count, dtype=np.uint8)
     middles = np.full((found.cameras_count, 2), np.nan)
-    per_camera = []
     for camera in range(found.cameras_count):
         visible = found.visible(camera)
         seen += visible
         positions = np.flatnonzero(visible)
-        per_camera.append(len(positions))
         if len(positions):
             middles[camera] = grid.metres(positions).mean(axis=0)
     counts = np.bincount(seen, minlength=found.cameras_count + 1).tolist()
     picture = _picture(seen.reshape(grid.rows, grid.columns), found.cameras_count)
-    return Coverage(hashlib.sha256(picture).hexdigest(), counts, per_camera, middles, picture)
+    return Coverage(hashlib.sha256(picture).hexdigest(), counts, middles, picture)
 
 
 def _picture(seen: np.ndarray, most: int) -> bytes:

@@ -57,7 +57,7 @@ def read_wildtrack(path: Path, scene: Scene, report: Progress) -> People:
     found = _Rows(scene)
     for done, file in enumerate(files.values(), start=1):
         try:
-            frame = read_frame(file, anywhere, len(scene.cameras), views_required=False, repeated=True)
+            frame = read_frame(file, anywhere, len(scene.cameras), repeated=True)
             found.add(done - 1, frame)
         except FormatError as error:
             problems.extend(error.problems)
@@ -68,7 +68,7 @@ def read_wildtrack(path: Path, scene: Scene, report: Progress) -> People:
 
 def read_csv_metres(path: Path, scene: Scene, report: Progress) -> People:
     path = _only(path, ".csv")
-    table = read_csv(path, repeated=True)
+    table = read_csv(path)
     report(READING, 1, 1)
     sources = _lines(path, table.lines)
     found = people(table.frames, table.persons, scene.grid.position(table.xy), sources)
@@ -98,14 +98,14 @@ def read_mot_files(path: Path, scene: Scene, report: Progress) -> People | Boxes
     views = {GROUND: path} if path.is_file() else _mot_views(path)
     if GROUND in views and GROUND not in scene.cameras:
         file = views[GROUND]
-        return _ground(file, read_mot(file, ANY_FRAME, repeated=True), scene)
+        return _ground(file, read_mot(file, ANY_FRAME), scene)
     tables: list[tuple[Path, str, MotTable]] = []
     problems = ProblemList(path)
     if not views:
         problems.add("", "no MOTChallenge files: VIEW.txt or VIEW/gt/gt.txt")
     for done, (name, file) in enumerate(views.items(), start=1):
         try:
-            tables.append((file, name, read_mot(file, ANY_FRAME, repeated=True)))
+            tables.append((file, name, read_mot(file, ANY_FRAME)))
         except FormatError as error:
             problems.extend(error.problems)
         report(READING, done, len(views))
@@ -128,7 +128,7 @@ def read_coco_files(path: Path, scene: Scene, report: Progress) -> Boxes:
     found: list[tuple[Path, CocoFile]] = []
     for done, file in enumerate(files, start=1):
         try:
-            found.append((file, read_coco(file, repeated=True)))
+            found.append((file, read_coco(file)))
         except FormatError as error:
             problems.extend(error.problems)
         report(READING, done, len(files))

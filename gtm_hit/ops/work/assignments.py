@@ -58,8 +58,8 @@ class Unfinished(AssignmentError):
         self.frames = frames
 
 
-def lease_end(now: datetime | None = None) -> datetime:
-    return (now or timezone.now()) + timedelta(minutes=settings.LEASE_MINUTES)
+def lease_end() -> datetime:
+    return timezone.now() + timedelta(minutes=settings.LEASE_MINUTES)
 
 
 def first_lease_end() -> datetime:

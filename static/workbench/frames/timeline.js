@@ -213,7 +213,7 @@ export class Timeline {
 }
 
 /** Pure. @param {import("../../truth/store.js").Frame} frame @returns {{state: "done"|"yellow"|"open"|"empty"|"unknown", people: number, yellow: number}} */
-export function frameState({ people, done, loaded }) {
+function frameState({ people, done, loaded }) {
   const yellow = carriedOf(people).length;
   const state = !loaded ? "unknown" : yellow ? "yellow" : done ? "done" : people.size ? "open" : "empty";
   return { state, people: people.size, yellow };

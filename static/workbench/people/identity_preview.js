@@ -29,7 +29,7 @@ const COLOURS = [CYAN, "#ff9d5c", "#b7e36a", "#d9a6ff"];
 const DASHES = [[], [7, 3], [2, 3], [9, 3, 2, 3]];
 
 /** @param {Store} store @param {Patch} patch */
-export function changesOf(store, patch) {
+function changesOf(store, patch) {
   const edits = patch.edits.filter(isAboutPerson);
   /** @type {Run[]} */
   const runs = [];

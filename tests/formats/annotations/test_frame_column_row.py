@@ -103,10 +103,9 @@ whole = st.integers(0, MOST)
 
 @given(st.lists(st.tuples(whole, whole, whole), min_size=1))
 def test_what_was_written_is_read_again(tmp_path_factory, values) -> None:
-    path = tmp_path_factory.mktemp("lines") / "lines.txt"
     columns = np.array(values, dtype=np.int64).T
-    frame_column_row.write(path, FrameColumnRow(*columns))
-    again = frame_column_row.read(path)
+    data = frame_column_row.lines(FrameColumnRow(*columns))
+    again = frame_column_row.read(written(tmp_path_factory.mktemp("lines"), data))
     assert np.array_equal([again.frames, again.columns, again.rows], columns)
 
 

@@ -90,9 +90,10 @@ def test_a_real_frame_of_seven_views_costs_less_than_two_and_a_half_megabytes(wi
 @pytest.fixture
 def first_view(shared_data: Path) -> View:
     """WILDTRACK's C1 with the undistortion an import uses."""
-    layout = find_layout(shared_data / "wildtrack", images=Path("original_frames"))
     problems = ProblemList("")
-    views = read_views(layout, dict.fromkeys(layout.cameras, (1920, 1080)), "cm", True, problems)
+    layout = find_layout(shared_data / "wildtrack", problems, images=Path("original_frames"))
+    sizes = dict.fromkeys(layout.cameras, (1920, 1080))
+    views = read_views(layout.calibrations, layout.cameras, sizes, "cm", True, problems)
     problems.raise_if_any()
     return views[0]
 

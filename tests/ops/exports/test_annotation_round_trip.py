@@ -18,11 +18,11 @@ from gtm_hit.demo.render import truth
 from gtm_hit.demo.scene import read_scene
 from gtm_hit.formats.calibration.cameras_json import load_cameras
 from gtm_hit.formats.manifest import verify
-from gtm_hit.formats.pom.reading import read_pom
 from gtm_hit.models import Dataset, Frame, Layer, LayerFrame
 from gtm_hit.ops.datasets import demo
 from gtm_hit.ops.datasets.importing import ImportFailed
 from gtm_hit.ops.ground.coverage import table
+from tests.formats.pom_reader import read_pom
 from tests.ops.square_layer import add_cameras, content, export, fill, make_square, save, take_in
 from tests.work_scene import make_layer, row
 
@@ -239,7 +239,8 @@ def test_all_formats_go_into_one_export(layer: Layer, tmp_path: Path) -> None:
 def test_rectangles_are_those_of_the_table(layer: Layer, tmp_path: Path) -> None:
     folder = export(layer, tmp_path / "out", "pom", "multiviewx")
     dataset = layer.dataset
-    found = read_pom(folder / "rectangles.pom", dataset.grid, 3)
+    found = read_pom(folder / "rectangles.pom")
+    assert (found.header.grid, found.header.cameras) == (dataset.grid, 3)
     expected = table(dataset)
     for camera in range(3):
         assert (found.boxes[camera] == expected.boxes(camera)).all()

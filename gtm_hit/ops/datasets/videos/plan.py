@@ -12,7 +12,7 @@ from gtm_hit.formats.dataset_folder import DatasetFolder, natural_key
 from gtm_hit.formats.problems import ProblemList
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Dataset, Frame
-from gtm_hit.ops.calibration.cameras import tell_differences, tell_wrong_unit, views_of
+from gtm_hit.ops.calibration.cameras import read_views, tell_differences, tell_wrong_unit
 from gtm_hit.ops.datasets.options import ImportOptions, SceneValues, scene, tell_too_many
 from gtm_hit.ops.datasets.videos.options import VideoOptions, VideoSource
 from gtm_hit.ops.datasets.videos.video import Facts, VideoError, probe
@@ -99,7 +99,7 @@ def _check_calibration(
     names = list(dict.fromkeys(source.camera for source in sources))
     files = find_calibrations(DatasetFolder(options.folder, problems), names, options.calibrations)
     sizes = {name: (each.width, each.height) for name, each in facts.items()}
-    views = views_of(files, names, sizes, options.unit, options.undistort, problems)
+    views = read_views(files, names, sizes, options.unit, options.undistort, problems)
     cameras = [view.camera for view in views]
     for camera in cameras:
         _tell_other_size(camera, problems)

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from gtm_hit.formats.annotations.wildtrack_json import extra_text, joined, person_texts
-from gtm_hit.formats.pom.writing import PomHeader, write_pom
+from gtm_hit.formats.pom import PomHeader, write_pom
 from gtm_hit.geometry.cylinder import FootRule
 from gtm_hit.models import Annotation
 from gtm_hit.ops.exports.calibrations import calibration_files

@@ -14,7 +14,7 @@
     RECTANGLE 0 1 1510 139 1561 299           camera, position, xmin, ymin, xmax, ymax
 
 Readers take the header by the place of its lines as well as by name, so it is always written whole and in
-this order. MultiviewX is published without a header. Reading: `pom_reader`.
+this order. MultiviewX is published without a header.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The part of the ground a camera sees."""
+"""The part of the ground a camera sees: what `footprint` of the pages is compared with."""
 
 from __future__ import annotations
 

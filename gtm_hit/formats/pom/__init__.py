@@ -1,1 +1,0 @@
-"""The POM file of rectangles."""
