@@ -5,7 +5,6 @@ import { Notices } from "../base/notices.js";
 import { mapColours, startOptions } from "../views/display.js";
 import { Layout } from "../views/layout.js";
 import { Panes } from "../views/panes.js";
-import { Paths } from "../views/paths.js";
 import { Pointer } from "../views/pointer.js";
 import { Views } from "../views/views.js";
 import { Actions } from "./actions.js";
@@ -106,7 +105,7 @@ export async function buildWorkbench(root, session, { mode, home }) {
     setControls: connectKeyboard(bar, perform, settings),
   });
   actions.use(chooseViews(root, views, page));
-  new Paths(panes, settings);
+  showPaths(session.store, page);
   showFilmstrip(timeline, notices, { ...session, navigation, panes, settings });
   if (mode !== "tutorial") addForWork(panel, session, page, { actions, perform, identity, heads, guard });
   watch(session, panes, notices);
@@ -154,6 +153,23 @@ async function startTutorial(panel, parts) {
   const tutorial = new Tutorial(parts);
   panel.element.prepend(tutorial.element);
   tutorial.start();
+}
+
+/**
+ * Paths are of people who were chosen, or of everybody for those who like that.
+ * @param {import("../truth/store.js").Store} store @param {Page} page
+ */
+function showPaths(store, { settings, panes, notices }) {
+  /** @param {typeof import("../views/paths.js")} module */
+  const make = ({ Paths }) => {
+    new Paths(panes, settings);
+    panes.markPeople();
+    return true;
+  };
+  const paths = fetched(notices, import.meta.resolve("../views/paths.js"), make);
+  store.on("selection", paths);
+  settings.on("change", ({ name }) => name.startsWith("paths") && paths());
+  if (settings.get("pathsOnMap") === "all" || settings.get("pathsInViews") === "all") paths();
 }
 
 /**
