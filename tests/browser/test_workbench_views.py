@@ -143,7 +143,9 @@ def test_one_slider_sets_all_cameras_and_the_map_stays(bench: Callable[..., Benc
 
 def test_escape_closes_the_menu_of_views_and_keys_annotate_again(bench: Callable[..., Bench]) -> None:
     opened = bench().open()
-    opened.press("u", "Escape")
+    opened.press("u")
+    expect(opened.page.locator(".views-menu")).to_be_visible()  # the part arrives when it is asked for
+    opened.press("Escape")
     expect(opened.page.locator(".views-menu")).to_be_hidden()
     opened.press("Tab")
     assert opened.selected() == "1"
