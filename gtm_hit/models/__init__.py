@@ -4,6 +4,7 @@ from gtm_hit.models.access import Attempt, EntryLink
 from gtm_hit.models.annotation import Annotation, AppendOnlyError, Layer, LayerFrame, Save
 from gtm_hit.models.api_token import ApiToken
 from gtm_hit.models.calibration import Calibration
+from gtm_hit.models.campaign import Campaign, CampaignWorker
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
 from gtm_hit.models.release import Release
@@ -18,6 +19,8 @@ __all__ = [
     "Batch",
     "Calibration",
     "Camera",
+    "Campaign",
+    "CampaignWorker",
     "Dataset",
     "EntryLink",
     "Frame",

@@ -9,6 +9,7 @@ from django.db.models import Q
 from django.utils import timezone
 
 from gtm_hit.models.annotation import Layer
+from gtm_hit.models.campaign import Campaign
 from gtm_hit.models.dataset import Dataset, Frame
 
 
@@ -54,6 +55,14 @@ class Batch(models.Model):
     """Consecutive frames to be annotated together. Several copies give several opinions."""
 
     dataset = models.ForeignKey(Dataset, on_delete=models.CASCADE, related_name="batches")
+    campaign = models.ForeignKey(
+        Campaign,
+        null=True,
+        blank=True,
+        on_delete=models.PROTECT,
+        related_name="batches",
+        help_text="empty: made for the dataset itself",
+    )
     number = models.PositiveIntegerField(help_text="position along the dataset, from 1")
     copy = models.PositiveSmallIntegerField(default=1, help_text="the n-th independent annotation")
     frames = models.ManyToManyField(Frame, related_name="batches")
@@ -63,7 +72,14 @@ class Batch(models.Model):
         ordering = ["dataset", "copy", "number"]
         verbose_name_plural = "batches"
         constraints = [
-            models.UniqueConstraint(fields=["dataset", "number", "copy"], name="batch_number_once"),
+            models.UniqueConstraint(
+                fields=["dataset", "number", "copy"],
+                condition=Q(campaign__isnull=True),
+                name="batch_number_once",
+            ),
+            models.UniqueConstraint(
+                fields=["campaign", "number", "copy"], name="batch_number_once_in_campaign"
+            ),
         ]
 
     def __str__(self) -> str:
@@ -94,6 +110,9 @@ class Assignment(models.Model):
     expires_at = models.DateTimeField()
     submitted_at = models.DateTimeField(null=True, blank=True)
     code = models.CharField(max_length=20, unique=True, null=True, blank=True, editable=False)
+    submission = models.CharField(
+        max_length=120, blank=True, editable=False, help_text="the platform's own id of this piece of work"
+    )
     takes = models.PositiveIntegerField(default=1, editable=False, help_text="how often taken before a save")
     address = models.CharField(
         max_length=64, blank=True, editable=False, help_text="digest of the address it was taken from"
