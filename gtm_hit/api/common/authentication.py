@@ -15,8 +15,9 @@ from rest_framework.permissions import SAFE_METHODS, BasePermission
 from rest_framework.request import Request
 from rest_framework.views import APIView
 
-from gtm_hit.models import ApiToken, Assignment
+from gtm_hit.models import ApiToken, Assignment, Dataset
 from gtm_hit.ops import api_tokens
+from gtm_hit.ops.access.roles import may
 from gtm_hit.ops.work import links
 
 
@@ -118,10 +119,18 @@ class StaffMay(IsStaff):
     def has_permission(self, request: Request, view: APIView) -> bool:
         if not super().has_permission(request, view):
             return False
+        reads = request.method in SAFE_METHODS
+        role = getattr(view, "read_role" if reads else "write_role", None)
+        if role is not None and not may(request.user, role, _dataset_in_address(view)):
+            return False
         if isinstance(request.auth, ApiToken):
-            reads = request.method in SAFE_METHODS
             usual = ApiToken.Scope.READ if reads else None
             needed = getattr(view, "read_scope" if reads else "write_scope", usual)
             if needed not in request.auth.scopes:
                 raise PermissionDenied(_("The token lacks the scope %(scope)s.") % {"scope": needed})
         return True
+
+
+def _dataset_in_address(view: APIView) -> Dataset | None:
+    slug = view.kwargs.get("slug")
+    return Dataset.objects.filter(slug=slug).first() if slug else None

@@ -17,6 +17,7 @@ from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, St
 from gtm_hit.api.common.parsing import BoundedJSONParser
 from gtm_hit.api.common.refusals import refusal, valid
 from gtm_hit.models import ApiToken, Dataset, Layer
+from gtm_hit.ops.access.roles import Role
 
 READS = {401: refusal("not_signed_in"), 403: refusal("forbidden"), 404: refusal("not_found")}
 ASKS = {400: refusal("invalid; details: a list of place and reason"), **READS}
@@ -43,6 +44,9 @@ class StaffView(APIView):
     permission_classes = [StaffMay]
     parser_classes = [BoundedJSONParser]
     write_scope: ApiToken.Scope | None = None
+    # Who may, for the dataset in the address; None: any staff.
+    read_role: Role | None = None
+    write_role: Role | None = None
 
 
 class Conflict(exceptions.APIException):

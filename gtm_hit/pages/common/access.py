@@ -6,8 +6,12 @@ from typing import Any
 
 from django.contrib.auth.models import User
 from django.contrib.auth.views import redirect_to_login
+from django.core.exceptions import PermissionDenied
 from django.http import HttpRequest, HttpResponseBase
 from django.urls import reverse
+
+from gtm_hit.models import Dataset
+from gtm_hit.ops.access.roles import Role, may
 
 View = Callable[..., HttpResponseBase]
 
@@ -30,3 +34,24 @@ def staff_only(view: View) -> View:
         return redirect_to_login(wanted)
 
     return guarded
+
+
+def needs(role: Role) -> Callable[[View], View]:
+    """Only for who has the role for the dataset in the address (`slug`), or for any if there is none.
+
+    Strangers are sent to the login page; who is known but may not gets 403.
+    """
+
+    def guard(view: View) -> View:
+        @wraps(view)
+        def guarded(request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponseBase:
+            if not request.user.is_authenticated:
+                return staff_only(view)(request, *args, **kwargs)
+            dataset = Dataset.objects.filter(slug=kwargs["slug"]).first() if "slug" in kwargs else None
+            if not may(request.user, role, dataset):
+                raise PermissionDenied
+            return view(request, *args, **kwargs)
+
+        return guarded
+
+    return guard
