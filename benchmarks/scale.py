@@ -94,7 +94,7 @@ def measure(slug: str, middle: int) -> dict[str, tuple[int, float]]:
 
     from gtm_hit.models import Layer
 
-    user, _made = User.objects.get_or_create(username="staff", is_staff=True)
+    user, _made = User.objects.get_or_create(username="staff", is_superuser=True)
     client = Client()
     client.force_login(user)
     layer = Layer.objects.get(dataset__slug=slug, name="truth")

@@ -24,7 +24,9 @@ from gtm_hit.models import (
     Job,
     Layer,
     LayerFrame,
+    Membership,
     Release,
+    RoleChange,
     Save,
     Worker,
 )
@@ -234,6 +236,22 @@ class ReleaseAdmin(LookOnlyAdmin):
 
     def get_queryset(self, request: HttpRequest) -> QuerySet[Release]:
         return super().get_queryset(request).defer("manifest")  # thousands of digests
+
+
+@admin.register(Membership)
+class MembershipAdmin(LookOnlyAdmin):
+    list_display = ["user", "role", "dataset"]
+    list_filter = ["role", "dataset"]
+    list_select_related = ["user", "dataset"]
+    search_fields = ["user__username", "dataset__slug"]
+
+
+@admin.register(RoleChange)
+class RoleChangeAdmin(LookOnlyAdmin):
+    list_display = ["at", "username", "role", "dataset", "granted", "by"]
+    list_filter = ["role", "granted"]
+    search_fields = ["username", "dataset", "by"]
+    date_hierarchy = "at"
 
 
 @admin.register(ApiToken)

@@ -29,7 +29,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def staff(client: Client) -> Client:
-    client.force_login(User.objects.create_user("staff", is_staff=True, is_superuser=True))
+    client.force_login(User.objects.create_user("staff", is_superuser=True))
     return client
 
 
@@ -79,6 +79,7 @@ def full_database(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_full_disk_is_called_so_by_rest(
     staff: Client, full_database: None, caplog: pytest.LogCaptureFixture
 ) -> None:
+    make_dataset()
     answer = staff.get("/api/v1/datasets/square/frames/")
     assert answer.status_code == 507
     assert answer.json()["code"] == "disk_full"
@@ -151,7 +152,7 @@ def test_a_body_is_not_read_before_its_sender_is_known(
 
 def test_staff_with_the_token_in_the_header_may_upload() -> None:
     client = Client(enforce_csrf_checks=True)
-    client.force_login(User.objects.create_user("staff", is_staff=True))
+    client.force_login(User.objects.create_user("staff", is_superuser=True))
     client.cookies["csrftoken"] = "y" * 32
     answer = client.post("/api/v1/uploads/", {"file": large_file()}, headers={"X-CSRFToken": "y" * 32})
     assert answer.status_code == 400  # no zip, but taken in and looked at

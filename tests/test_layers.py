@@ -20,6 +20,7 @@ MAY_IMPORT = {
     "tasks": {"models", "ops"},
     "api": {"geometry", "formats", "metrics", "models", "ops", "crowd"},
     "pages": {"geometry", "formats", "metrics", "models", "ops", "crowd"},
+    "templatetags": {"models", "ops"},
     "management": {"geometry", "formats", "metrics", "demo", "models", "ops", "crowd"},
     "admin": {"models", "ops"},
 }

@@ -32,6 +32,7 @@ from gtm_hit.api.datasets.importing import refused
 from gtm_hit.api.jobs import JobShape, job_or_404, started
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.models import ApiToken, Calibration, Dataset, Job
+from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.calibration import job as calibration_job
 from gtm_hit.ops.calibration import versions
 from gtm_hit.ops.calibration.cameras import UNITS
@@ -157,6 +158,7 @@ class CannotConfirm(Conflict):
 
 class Calibrations(StaffView):
     parser_classes = [CalibrationParser]
+    write_role = Role.MAINTAINER
     write_scope = ApiToken.Scope.IMPORT
 
     @extend_schema(
@@ -217,6 +219,8 @@ class OneVersion(StaffView):
 
 
 class OneCalibration(StaffView):
+    read_role = Role.MAINTAINER
+
     @extend_schema(
         operation_id="calibration_preview",
         summary="Which boxes move, by how many pixels",
@@ -224,13 +228,14 @@ class OneCalibration(StaffView):
         responses=answers(200, CalibrationPreviewSerializer, READS),
     )
     def get(self, request: Request, slug: str, pk: int) -> Response:
-        job = change_or_404(slug, pk)
+        job = change_or_404(request, slug, pk)
         if job.state != Job.State.DONE:
             raise Http404
-        return Response(CalibrationPreviewSerializer(seen(job)).data)
+        return Response(CalibrationPreviewSerializer(seen(request, job)).data)
 
 
 class ConfirmCalibration(StaffView):
+    write_role = Role.MAINTAINER
     write_scope = ApiToken.Scope.IMPORT
 
     @extend_schema(
@@ -243,20 +248,21 @@ class ConfirmCalibration(StaffView):
         ),
     )
     def post(self, request: Request, slug: str, pk: int) -> Response:
-        job = change_or_404(slug, pk)
+        job = change_or_404(request, slug, pk)
         try:
             calibration_job.confirm(job, caller(request))
         except ReplacementError as error:
             raise CannotConfirm(str(error)) from error
-        return Response(CalibrationPreviewSerializer(seen(change_or_404(slug, pk))).data)
+        return Response(CalibrationPreviewSerializer(seen(request, change_or_404(request, slug, pk))).data)
 
 
-def change_or_404(slug: str, pk: int) -> Job:
-    job = job_or_404(pk)
+def change_or_404(request: Request, slug: str, pk: int) -> Job:
+    job = job_or_404(request, pk)
     if job.kind != Job.Kind.REPLACE_CALIBRATION or job.dataset is None or job.dataset.slug != slug:
         raise Http404
     return job
 
 
-def seen(job: Job) -> dict[str, Any]:
-    return {"confirmed_at": None, "calibration": None, **job.result, "job": job.pk}
+def seen(request: Request, job: Job) -> dict[str, Any]:
+    found = calibration_job.seen_by(caller(request), job)
+    return {"confirmed_at": None, "calibration": None, **found, "job": job.pk}

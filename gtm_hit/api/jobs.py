@@ -31,6 +31,8 @@ from gtm_hit.api.common.staff import (
 )
 from gtm_hit.models import ApiToken, Job
 from gtm_hit.ops import overview
+from gtm_hit.ops.access.jobs import jobs_of
+from gtm_hit.ops.access.roles import CARES
 from gtm_hit.ops.exports import expiry, exporting
 from gtm_hit.ops.exports.expiry import Removed
 from gtm_hit.ops.jobs import queue as job_ops
@@ -115,8 +117,8 @@ class JobsQuery(serializers.Serializer[Any]):
     state = serializers.ChoiceField(choices=Job.State.choices, required=False)
 
 
-def job_or_404(pk: int) -> Job:
-    found = overview.jobs().filter(pk=pk).first()
+def job_or_404(request: Request, pk: int) -> Job:
+    found = jobs_of(caller(request)).filter(pk=pk).first()
     if found is None:
         raise Http404
     return found
@@ -124,10 +126,11 @@ def job_or_404(pk: int) -> Job:
 
 def started(job: Job) -> Response:
     """The answer to whoever asked for long work."""
-    return Response(JobShape(job_or_404(job.pk)).data, status=202)
+    return Response(JobShape(overview.jobs().get(pk=job.pk)).data, status=202)
 
 
 class Jobs(StaffView, ListAPIView[Job]):
+    read_role = CARES
     queryset = Job.objects.none()
     serializer_class = JobShape
     pagination_class = Pages
@@ -136,7 +139,7 @@ class Jobs(StaffView, ListAPIView[Job]):
         wanted = asked(self.request, JobsQuery)
         if "dataset" in wanted:
             wanted["dataset__slug"] = wanted.pop("dataset")
-        return overview.jobs().filter(**wanted).order_by("-created_at", "-pk")
+        return jobs_of(caller(self.request)).filter(**wanted).order_by("-created_at", "-pk")
 
     @extend_schema(
         operation_id="jobs",
@@ -149,9 +152,11 @@ class Jobs(StaffView, ListAPIView[Job]):
 
 
 class OneJob(StaffView):
+    read_role = CARES
+
     @extend_schema(operation_id="job", summary="A job", responses=answers(200, JobShape, READS))
     def get(self, request: Request, pk: int) -> Response:
-        return Response(JobShape(job_or_404(pk)).data)
+        return Response(JobShape(job_or_404(request, pk)).data)
 
 
 class Gone(APIException):
@@ -164,6 +169,8 @@ class NoFiles(Conflict):
 
 
 class JobAction(StaffView):
+    write_role = CARES  # and of the jobs only those that one could start
+
     @property
     def write_scope(self) -> ApiToken.Scope:  # type: ignore[override]
         kind = Job.objects.filter(pk=self.kwargs["pk"]).values_list("kind", flat=True).first()
@@ -179,8 +186,8 @@ class CancelJob(JobAction):
         responses=answers(200, JobShape, READS),
     )
     def post(self, request: Request, pk: int) -> Response:
-        job_ops.cancel(job_or_404(pk))
-        return Response(JobShape(job_or_404(pk)).data)
+        job_ops.cancel(job_or_404(request, pk))
+        return Response(JobShape(job_or_404(request, pk)).data)
 
 
 class RetryJob(JobAction):
@@ -191,7 +198,7 @@ class RetryJob(JobAction):
         responses=answers(202, JobShape, {**READS, 409: refusal("under_way")}),
     )
     def post(self, request: Request, pk: int) -> Response:
-        job = job_or_404(pk)
+        job = job_or_404(request, pk)
         if not job.finished:
             raise Conflict(_("This job is still under way."))
         return started(job_ops.retry(job, caller(request)))
@@ -206,9 +213,9 @@ class DeleteFiles(JobAction):
         responses=answers(200, JobShape, {**READS, 409: refusal("no_files")}),
     )
     def post(self, request: Request, pk: int) -> Response:
-        if not expiry.delete(job_or_404(pk)):
+        if not expiry.delete(job_or_404(request, pk)):
             raise NoFiles(_("This job has no files to delete."))
-        return Response(JobShape(job_or_404(pk)).data)
+        return Response(JobShape(job_or_404(request, pk)).data)
 
 
 class Download(StaffView):
@@ -219,6 +226,8 @@ class Download(StaffView):
 
 
 class DownloadJob(Download):
+    read_role = CARES
+
     @extend_schema(
         operation_id="download_job",
         summary="The zip of a finished export",
@@ -229,7 +238,7 @@ class DownloadJob(Download):
         },
     )
     def get(self, request: Request, pk: int) -> FileResponse:
-        job = job_or_404(pk)
+        job = job_or_404(request, pk)
         if reason := expiry.removed(job):
             raise Gone(GONE[reason])
         export = exporting.finished(job)

@@ -28,6 +28,7 @@ from gtm_hit.api.common.staff import (
 )
 from gtm_hit.api.jobs import Download, JobShape, started
 from gtm_hit.models import ApiToken, Release
+from gtm_hit.ops.access.roles import CARES, Role, layers_of
 from gtm_hit.ops.exports import exporting
 from gtm_hit.ops.exports.formats.registry import DEFAULT_FORMATS, FORMATS
 from gtm_hit.ops.releases import releasing
@@ -65,6 +66,7 @@ class MakeReleaseSerializer(serializers.Serializer[Any]):
 
 
 class Exports(StaffView):
+    write_role = CARES
     write_scope = ApiToken.Scope.RELEASE
 
     @extend_schema(
@@ -76,7 +78,7 @@ class Exports(StaffView):
         examples=[OpenApiExample("two formats", {"formats": ["wildtrack", "coco"]}, request_only=True)],
     )
     def post(self, request: Request, slug: str, name: str) -> Response:
-        layer = layer_or_404(slug, name)
+        layer = layer_or_404(request, slug, name)
         wanted = valid(ExportSerializer(data=request.data))
         return started(exporting.start(layer, caller(request), wanted["formats"]))
 
@@ -85,10 +87,11 @@ class Releases(StaffView, ListAPIView[Release]):
     queryset = Release.objects.none()
     serializer_class = ReleaseShape
     pagination_class = Pages
+    write_role = Role.MAINTAINER
     write_scope = ApiToken.Scope.RELEASE
 
     def get_queryset(self) -> QuerySet[Release]:
-        return releasing.releases(dataset_or_404(self.kwargs["slug"]))
+        return releases_in(self.request, self.kwargs["slug"])
 
     @extend_schema(
         operation_id="releases",
@@ -113,7 +116,7 @@ class Releases(StaffView, ListAPIView[Release]):
     def post(self, request: Request, slug: str) -> Response:
         dataset = dataset_or_404(slug)
         wanted = valid(MakeReleaseSerializer(data=request.data))
-        layer = layer_named(dataset, wanted["layer"], "layer")
+        layer = layer_named(request, dataset, wanted["layer"], "layer")
         order = releasing.Order(
             layer, wanted["licence"], wanted["title"], tuple(wanted["formats"]), caller(request)
         )
@@ -130,7 +133,7 @@ class OneRelease(StaffView):
         responses=answers(200, ReleaseShape, READS),
     )
     def get(self, request: Request, slug: str, number: int) -> Response:
-        return Response(ReleaseShape(release_or_404(slug, number)).data)
+        return Response(ReleaseShape(release_or_404(request, slug, number)).data)
 
 
 class DownloadRelease(Download):
@@ -140,7 +143,7 @@ class DownloadRelease(Download):
         responses={(200, "application/zip"): OpenApiTypes.BINARY, **READS},
     )
     def get(self, request: Request, slug: str, number: int) -> FileResponse:
-        archive = releasing.archive_of(release_or_404(slug, number))
+        archive = releasing.archive_of(release_or_404(request, slug, number))
         if not archive.is_file():
             raise Http404
         return FileResponse(archive.open("rb"), as_attachment=True, filename=archive.name)
@@ -156,7 +159,7 @@ class ReleaseFile(Download):
         responses={(200, "application/octet-stream"): OpenApiTypes.BINARY, **READS},
     )
     def get(self, request: Request, slug: str, number: int, name: str) -> FileResponse:
-        kept = releasing.part_of(release_or_404(slug, number), name)
+        kept = releasing.part_of(release_or_404(request, slug, number), name)
         if kept is None:
             raise Http404
         return FileResponse(
@@ -164,8 +167,14 @@ class ReleaseFile(Download):
         )
 
 
-def release_or_404(slug: str, number: int) -> Release:
-    found = releasing.releases(dataset_or_404(slug)).filter(number=number).first()
+def releases_in(request: Request, slug: str) -> QuerySet[Release]:
+    """Without those of layers that the caller may not read."""
+    found = releasing.releases(dataset_or_404(slug))
+    return found.filter(layer__in=layers_of(caller(request)))
+
+
+def release_or_404(request: Request, slug: str, number: int) -> Release:
+    found = releases_in(request, slug).filter(number=number).first()
     if found is None:
         raise Http404
     return found

@@ -7,7 +7,7 @@ from django.views.decorators.gzip import gzip_page
 from drf_spectacular.views import SpectacularAPIView
 
 # Importing it tells drf-spectacular about the tokens.
-from gtm_hit.api import calibration, jobs, releases, work
+from gtm_hit.api import calibration, jobs, releases, roles, work
 from gtm_hit.api.common import schema  # noqa: F401
 from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.common.docs import DocsView
@@ -81,6 +81,8 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("calibrations/<int:pk>/", calibration.OneCalibration.as_view()),
     path("calibrations/<int:pk>/confirm/", calibration.ConfirmCalibration.as_view()),
     path("annotation-imports/", importing.AnnotationImports.as_view()),
+    path("roles/", roles.DatasetRoles.as_view()),
+    path("roles/take/", roles.TakeDatasetRole.as_view()),
     path("batches/", work.Batches.as_view()),
     path("link/", work.Link.as_view()),
     path("progress/", work.Progress.as_view()),
@@ -98,6 +100,8 @@ scripts: list[URLPattern | URLResolver] = [
     path("imports/", importing.Imports.as_view()),
     path("video-imports/", videos.VideoImports.as_view()),
     path("evaluations/", comparing.TextFiles.as_view()),
+    path("roles/", roles.Roles.as_view()),
+    path("roles/take/", roles.TakeRole.as_view()),
     path("jobs/", jobs.Jobs.as_view()),
     path("jobs/<int:pk>/", jobs.OneJob.as_view()),
     path("jobs/<int:pk>/cancel/", jobs.CancelJob.as_view()),

@@ -28,6 +28,7 @@ from gtm_hit.api.common.staff import (
 )
 from gtm_hit.models import ApiToken, Assignment, Batch, Dataset
 from gtm_hit.ops import overview
+from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.work import batches, entry_links, links, workers
 
 
@@ -92,6 +93,7 @@ class Batches(StaffView, ListAPIView[Batch]):
     queryset = Batch.objects.none()
     serializer_class = BatchShape
     pagination_class = Pages
+    write_role = Role.MANAGER
     write_scope = ApiToken.Scope.WORK
 
     def get_queryset(self) -> QuerySet[Batch]:
@@ -144,6 +146,8 @@ class SwitchSerializer(serializers.Serializer[Any]):
 
 
 class Link(StaffView):
+    read_role = Role.MANAGER
+    write_role = Role.MANAGER
     # A link lets workers in, and that is more than reading.
     read_scope = ApiToken.Scope.WORK
     write_scope = ApiToken.Scope.WORK
@@ -200,6 +204,7 @@ class Progress(StaffView):
 
 
 class Assignments(StaffView, ListAPIView[Assignment]):
+    read_role = Role.REVIEWER
     queryset = Assignment.objects.none()
     serializer_class = AssignmentShape
     pagination_class = Pages

@@ -8,6 +8,7 @@ from gtm_hit.models.campaign import Campaign, CampaignWorker
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
 from gtm_hit.models.release import Release
+from gtm_hit.models.role import Membership, Role, RoleChange
 from gtm_hit.models.work import Assignment, Batch, Worker
 
 __all__ = [
@@ -28,7 +29,10 @@ __all__ = [
     "Job",
     "Layer",
     "LayerFrame",
+    "Membership",
     "Release",
+    "Role",
+    "RoleChange",
     "Save",
     "Worker",
 ]

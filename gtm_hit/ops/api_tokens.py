@@ -13,6 +13,7 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from gtm_hit.models import ApiToken
+from gtm_hit.ops.access.roles import SEES, Role, may, may_everywhere
 from gtm_hit.ops.errors import OperationError
 
 PREFIX = "gtm_"  # so that scanners for leaked keys can tell what they found
@@ -24,7 +25,7 @@ class TokenError(OperationError, ValueError):
 
 
 class BadKey(OperationError):
-    """No token's key, or one that is revoked or expired, or whose owner is no staff any more."""
+    """No token's key, or one that is revoked or expired, or whose owner may nothing any more."""
 
 
 def make(
@@ -38,8 +39,8 @@ def make(
     if unknown or not scopes:
         known = ", ".join(ApiToken.Scope.values)
         raise TokenError(_("A token needs at least one of these scopes: %(known)s.") % {"known": known})
-    if not (user.is_active and user.is_staff):
-        raise TokenError(_("Only staff may have tokens."))
+    if not may(user, SEES):
+        raise TokenError(_("Only who has a role for a dataset may have tokens, and annotators need none."))
     if expires_at and expires_at <= timezone.now():
         raise TokenError(_("A token must not have expired before it is made."))
     key = PREFIX + secrets.token_urlsafe(32)
@@ -53,7 +54,7 @@ def make(
 def find(key: str) -> ApiToken:
     """The valid token of this key. Raises BadKey."""
     token = valid().select_related("user").filter(digest=digest(key)).first()
-    if token is None:
+    if token is None or not may(token.user, SEES):
         raise BadKey("unknown, revoked or expired")
     now = timezone.now()
     if token.last_used_at is None or token.last_used_at < now - LAST_USE_EVERY:
@@ -63,15 +64,13 @@ def find(key: str) -> ApiToken:
 
 def valid() -> QuerySet[ApiToken]:
     current = Q(expires_at__isnull=True) | Q(expires_at__gt=timezone.now())
-    return ApiToken.objects.filter(
-        current, revoked_at__isnull=True, user__is_active=True, user__is_staff=True
-    )
+    return ApiToken.objects.filter(current, revoked_at__isnull=True, user__is_active=True)
 
 
 def visible_to(user: User) -> QuerySet[ApiToken]:
-    """One's own tokens; superusers see and revoke everybody's."""
+    """One's own tokens; administrators see and revoke everybody's."""
     found = ApiToken.objects.select_related("user")
-    return found if user.is_superuser else found.filter(user=user)
+    return found if may_everywhere(user, Role.ADMINISTRATOR) else found.filter(user=user)
 
 
 def revoke(token: ApiToken) -> None:

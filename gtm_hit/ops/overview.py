@@ -22,6 +22,7 @@ from gtm_hit.models import (
     Layer,
     LayerFrame,
 )
+from gtm_hit.ops.access.roles import Somebody, datasets_of, layers_of
 
 
 @dataclass(frozen=True)
@@ -37,12 +38,13 @@ class DatasetSummary:
     pictures: list[Image]  # the first frame's, by camera
 
 
-def datasets() -> list[DatasetSummary]:
-    return _summaries(Dataset.objects.all())
+def datasets(user: Somebody) -> list[DatasetSummary]:
+    """Those that somebody sees, with the layers he may read."""
+    return _summaries(datasets_of(user), layers_of(user))
 
 
-def dataset(slug: str) -> DatasetSummary | None:
-    return next(iter(_summaries(Dataset.objects.filter(slug=slug))), None)
+def dataset(slug: str, user: Somebody) -> DatasetSummary | None:
+    return next(iter(_summaries(datasets_of(user).filter(slug=slug), layers_of(user))), None)
 
 
 def layers(dataset: Dataset) -> QuerySet[Layer]:
@@ -162,7 +164,7 @@ def jobs() -> QuerySet[Job]:
     return Job.objects.select_related("dataset", "created_by")
 
 
-def _summaries(found: QuerySet[Dataset]) -> list[DatasetSummary]:
+def _summaries(found: QuerySet[Dataset], layers: QuerySet[Layer]) -> list[DatasetSummary]:
     frames = Frame.objects.filter(dataset=OuterRef("pk")).order_by("number")
     finished = LayerFrame.objects.filter(
         layer__dataset=OuterRef("pk"), layer__hidden=False, layer__unfinished=False, done=True
@@ -173,7 +175,7 @@ def _summaries(found: QuerySet[Dataset]) -> list[DatasetSummary]:
             frame_count=_count(frames.order_by(), "dataset", "pk"),
             annotated_count=_count(finished, "layer__dataset", "frame", distinct=True),
             batch_count=_count(Batch.objects.filter(dataset=OuterRef("pk")), "dataset", "pk"),
-            layer_count=_count(Layer.objects.filter(dataset=OuterRef("pk")), "dataset", "pk"),
+            layer_count=_count(layers.filter(dataset=OuterRef("pk")), "dataset", "pk"),
             first_frame=Subquery(frames.values("pk")[:1]),
             first_number=Subquery(frames.values("number")[:1]),
             last_number=Subquery(frames.reverse().values("number")[:1]),

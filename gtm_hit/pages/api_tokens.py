@@ -15,7 +15,8 @@ from django.views.decorators.http import require_http_methods, require_POST
 
 from gtm_hit.models import ApiToken
 from gtm_hit.ops import api_tokens
-from gtm_hit.pages.common.access import StaffRequest, staff_only
+from gtm_hit.ops.access.roles import SEES
+from gtm_hit.pages.common.access import StaffRequest, needs
 
 SCOPES = [
     (ApiToken.Scope.READ.value, gettext_lazy("read everything")),
@@ -45,7 +46,7 @@ class TokenForm(forms.Form):
 
 @require_http_methods(["GET", "HEAD", "POST"])
 @never_cache
-@staff_only
+@needs(SEES)
 def tokens(request: StaffRequest) -> HttpResponse:
     form, key = TokenForm(request.POST or None), ""
     if request.method == "POST" and form.is_valid():
@@ -67,7 +68,7 @@ def tokens(request: StaffRequest) -> HttpResponse:
 
 
 @require_POST
-@staff_only
+@needs(SEES)
 def revoke(request: StaffRequest, pk: int) -> HttpResponse:
     api_tokens.revoke(get_object_or_404(api_tokens.visible_to(request.user), pk=pk))
     return redirect("tokens")

@@ -15,13 +15,14 @@ from django.views.decorators.http import require_http_methods, require_POST, req
 
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.models import Dataset, Job
-from gtm_hit.ops import overview
+from gtm_hit.ops.access.jobs import jobs_of
+from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.calibration import job as calibration_job
 from gtm_hit.ops.calibration import versions
 from gtm_hit.ops.calibration.cameras import UNITS
 from gtm_hit.ops.calibration.reading import MOST_BYTES, read_upload
 from gtm_hit.ops.calibration.replacing import ReplacementError
-from gtm_hit.pages.common.access import StaffRequest, staff_only
+from gtm_hit.pages.common.access import StaffRequest, needs
 from gtm_hit.pages.common.uploads import takes_uploads
 from gtm_hit.pages.datasets.listing import dataset_or_404
 
@@ -57,7 +58,7 @@ class View:
 
 
 @require_http_methods(["GET", "HEAD", "POST"])
-@takes_uploads
+@takes_uploads(Role.MAINTAINER)
 def calibration(request: StaffRequest, slug: str) -> HttpResponse:
     dataset = dataset_or_404(slug)
     form = CalibrationForm(request.POST or None, request.FILES or None)
@@ -81,13 +82,13 @@ def calibration(request: StaffRequest, slug: str) -> HttpResponse:
             for camera in [row.calibrated]
         ],
         "versions": versions.versions(dataset)[:ROWS_SHOWN],
-        "jobs": _jobs().filter(dataset=dataset)[:ROWS_SHOWN],
+        "jobs": _jobs(request).filter(dataset=dataset)[:ROWS_SHOWN],
     }
     return render(request, "staff/imports/calibration.html", context)
 
 
 @require_POST
-@staff_only
+@needs(Role.MAINTAINER)
 def compare_version(request: StaffRequest, slug: str, number: int) -> HttpResponse:
     dataset = dataset_or_404(slug)
     try:
@@ -97,27 +98,27 @@ def compare_version(request: StaffRequest, slug: str, number: int) -> HttpRespon
 
 
 @require_safe
-@staff_only
+@needs(Role.MAINTAINER)
 def preview(request: HttpRequest, slug: str, pk: int) -> HttpResponse:
-    job = get_object_or_404(_jobs(), pk=pk, dataset__slug=slug)
+    job = get_object_or_404(_jobs(request), pk=pk, dataset__slug=slug)
     if job.state != Job.State.DONE:
         return redirect("job", pk=pk)
-    dataset = dataset_or_404(slug)
+    dataset, seen = dataset_or_404(slug), calibration_job.seen_by(request.user, job)
     context = {
         "section": "datasets",
         "tab": "calibration",
         "dataset": dataset,
         "job": job,
-        "seen": job.result,
-        "views": _views(dataset, job.result),
+        "seen": seen,
+        "views": _views(dataset, seen),
     }
     return render(request, "staff/imports/calibration_preview.html", context)
 
 
 @require_POST
-@staff_only
+@needs(Role.MAINTAINER)
 def confirm(request: StaffRequest, slug: str, pk: int) -> HttpResponse:
-    job = get_object_or_404(_jobs(), pk=pk, dataset__slug=slug)
+    job = get_object_or_404(_jobs(request), pk=pk, dataset__slug=slug)
     try:
         calibration_job.confirm(job, request.user)
     except ReplacementError as error:
@@ -127,8 +128,8 @@ def confirm(request: StaffRequest, slug: str, pk: int) -> HttpResponse:
     return redirect("dataset", slug=slug)
 
 
-def _jobs() -> Any:
-    return overview.jobs().filter(kind=Job.Kind.REPLACE_CALIBRATION)
+def _jobs(request: HttpRequest) -> Any:
+    return jobs_of(request.user).filter(kind=Job.Kind.REPLACE_CALIBRATION)
 
 
 def _views(dataset: Dataset, seen: dict[str, Any]) -> list[View]:

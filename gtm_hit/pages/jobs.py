@@ -11,25 +11,26 @@ from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_POST, require_safe
 
 from gtm_hit.models import Job
-from gtm_hit.ops import overview
+from gtm_hit.ops.access.jobs import jobs_of
+from gtm_hit.ops.access.roles import CARES
 from gtm_hit.ops.exports import expiry, exporting
 from gtm_hit.ops.jobs import queue as job_ops
-from gtm_hit.pages.common.access import StaffRequest, staff_only
+from gtm_hit.pages.common.access import StaffRequest, needs
 
 ROWS_PER_PAGE = 50
 EXPORTS = {Job.Kind.EXPORT_LAYER, Job.Kind.MAKE_RELEASE}
 DIGESTS_SHOWN = 200
 
 
-def job_or_404(pk: int) -> Job:
-    return get_object_or_404(overview.jobs(), pk=pk)
+def job_or_404(request: HttpRequest, pk: int) -> Job:
+    return get_object_or_404(jobs_of(request.user), pk=pk)
 
 
 @require_safe
 @never_cache
-@staff_only
+@needs(CARES)
 def job(request: HttpRequest, pk: int) -> HttpResponse:
-    shown = job_or_404(pk)
+    shown = job_or_404(request, pk)
     export = exporting.finished(shown)
     context = {
         "section": "exports" if shown.kind in EXPORTS else "datasets",
@@ -46,16 +47,16 @@ def job(request: HttpRequest, pk: int) -> HttpResponse:
 
 
 @require_POST
-@staff_only
+@needs(CARES)
 def cancel(request: HttpRequest, pk: int) -> HttpResponse:
-    job_ops.cancel(job_or_404(pk))
+    job_ops.cancel(job_or_404(request, pk))
     return redirect("job", pk=pk)
 
 
 @require_POST
-@staff_only
+@needs(CARES)
 def retry(request: StaffRequest, pk: int) -> HttpResponse:
-    shown = job_or_404(pk)
+    shown = job_or_404(request, pk)
     if not shown.finished:
         messages.warning(request, _("This job is still under way."))
         return redirect("job", pk=pk)
@@ -63,9 +64,9 @@ def retry(request: StaffRequest, pk: int) -> HttpResponse:
 
 
 @require_safe
-@staff_only
+@needs(CARES)
 def download(request: HttpRequest, pk: int) -> HttpResponse | FileResponse:
-    shown = job_or_404(pk)
+    shown = job_or_404(request, pk)
     if expiry.removed(shown):
         return redirect("job", pk=pk)  # which says why, and offers to make it again
     export = exporting.finished(shown)
@@ -75,17 +76,17 @@ def download(request: HttpRequest, pk: int) -> HttpResponse | FileResponse:
 
 
 @require_POST
-@staff_only
+@needs(CARES)
 def delete_files(request: HttpRequest, pk: int) -> HttpResponse:
-    if not expiry.delete(job_or_404(pk)):
+    if not expiry.delete(job_or_404(request, pk)):
         messages.warning(request, _("This job has no files to delete."))
     return redirect("job", pk=pk)
 
 
 @require_safe
-@staff_only
+@needs(CARES)
 def exports(request: HttpRequest) -> HttpResponse:
-    found = overview.jobs().filter(kind=Job.Kind.EXPORT_LAYER)
+    found = jobs_of(request.user).filter(kind=Job.Kind.EXPORT_LAYER)
     page = Paginator(found, ROWS_PER_PAGE).get_page(request.GET.get("page"))
     return render(
         request, "staff/exports.html", {"section": "exports", "page": page, "jobs": page.object_list}

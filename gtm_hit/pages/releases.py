@@ -13,11 +13,12 @@ from django.utils.translation import gettext_lazy
 from django.views.decorators.http import require_http_methods, require_safe
 
 from gtm_hit.models import Job, Layer, Release
-from gtm_hit.ops import overview
+from gtm_hit.ops.access.jobs import jobs_of
+from gtm_hit.ops.access.roles import SEES, Role, layers_of
 from gtm_hit.ops.exports.formats.registry import FORMATS
 from gtm_hit.ops.quality.statistics.figures import FIGURES
 from gtm_hit.ops.releases import releasing
-from gtm_hit.pages.common.access import StaffRequest, staff_only
+from gtm_hit.pages.common.access import StaffRequest, needs
 from gtm_hit.pages.datasets.listing import dataset_or_404
 
 ROWS_PER_PAGE = 50
@@ -48,10 +49,10 @@ class ReleaseForm(forms.Form):
 
 
 @require_http_methods(["GET", "HEAD", "POST"])
-@staff_only
+@needs(SEES, write=Role.MAINTAINER)
 def dataset_releases(request: StaffRequest, slug: str) -> HttpResponse:
     dataset = dataset_or_404(slug)
-    layers = Layer.objects.select_related("dataset").filter(dataset=dataset).order_by("name")
+    layers = layers_of(request.user).select_related("dataset").filter(dataset=dataset).order_by("name")
     layers = layers.filter(layer_frames__revision__gte=1).distinct()
     truth = layers.filter(kind=Layer.Kind.GROUND_TRUTH).first()
     form = ReleaseForm(layers, request.POST or None, initial={"layer": truth.name if truth else None})
@@ -64,8 +65,10 @@ def dataset_releases(request: StaffRequest, slug: str) -> HttpResponse:
             return redirect("job", pk=releasing.start(order).pk)
         except releasing.ReleaseError as error:
             form.add_error(None, str(error))
-    page = Paginator(releasing.releases(dataset), ROWS_PER_PAGE).get_page(request.GET.get("page"))
-    made = overview.jobs().filter(dataset=dataset, kind=Job.Kind.MAKE_RELEASE).exclude(state=Job.State.DONE)
+    page = Paginator(
+        releasing.releases(dataset).filter(layer__in=layers_of(request.user)), ROWS_PER_PAGE
+    ).get_page(request.GET.get("page"))
+    made = jobs_of(request.user).filter(dataset=dataset, kind=Job.Kind.MAKE_RELEASE)
     context = {
         "section": "datasets",
         "tab": "releases",
@@ -73,15 +76,15 @@ def dataset_releases(request: StaffRequest, slug: str) -> HttpResponse:
         "form": form,
         "layers": layers.exists(),
         "page": page,
-        "jobs": made[:JOBS_SHOWN],
+        "jobs": made.exclude(state=Job.State.DONE)[:JOBS_SHOWN],
     }
     return render(request, "staff/releases.html", context)
 
 
 @require_safe
-@staff_only
+@needs(SEES)
 def release(request: HttpRequest, slug: str, number: int) -> HttpResponse:
-    found = _release_or_404(slug, number)
+    found = _release_or_404(request, slug, number)
     files = sorted(found.manifest["files"].items())
     archive = releasing.archive_of(found)
     context = {
@@ -103,27 +106,28 @@ def release(request: HttpRequest, slug: str, number: int) -> HttpResponse:
 
 
 @require_safe
-@staff_only
+@needs(SEES)
 def download(request: HttpRequest, slug: str, number: int) -> HttpResponse | FileResponse:
-    archive = releasing.archive_of(_release_or_404(slug, number))
+    archive = releasing.archive_of(_release_or_404(request, slug, number))
     if not archive.is_file():
         raise Http404(_("The files of this release are not on this server."))
     return FileResponse(archive.open("rb"), as_attachment=True, filename=archive.name)
 
 
 @require_safe
-@staff_only
+@needs(SEES)
 def part(request: HttpRequest, slug: str, number: int, name: str) -> HttpResponse | FileResponse:
     """One of the few files worth having without the archive."""
-    found = _release_or_404(slug, number)
+    found = _release_or_404(request, slug, number)
     kept = releasing.part_of(found, name)
     if kept is None:
         raise Http404(_("This release has no such file on this server."))
     return FileResponse(kept.open("rb"), as_attachment=True, filename=name)
 
 
-def _release_or_404(slug: str, number: int) -> Release:
-    found = Release.objects.select_related("dataset", "layer", "created_by")
+def _release_or_404(request: HttpRequest, slug: str, number: int) -> Release:
+    found = Release.objects.filter(layer__in=layers_of(request.user))
+    found = found.select_related("dataset", "layer", "created_by")
     return get_object_or_404(found, dataset__slug=slug, number=number)
 
 

@@ -41,7 +41,7 @@ def holder(assignment: Assignment) -> Caller:
 
 def bearer(*scopes: str) -> Caller:
     """A script with a token of these scopes; all scripts act under one name."""
-    user, _made = User.objects.get_or_create(username="script", defaults={"is_staff": True})
+    user, _made = User.objects.get_or_create(username="script", defaults={"is_superuser": True})
     _token, key = api_tokens.make(user, " ".join(scopes), scopes)
     return Caller(f"Bearer {key}")
 
@@ -86,7 +86,7 @@ def user(db: None) -> Caller:
 
 @pytest.fixture
 def staff(db: None) -> Caller:
-    return Caller(user=User.objects.create_user("manager", password="x", is_staff=True))
+    return Caller(user=User.objects.create_user("manager", password="x", is_superuser=True))
 
 
 @pytest.fixture

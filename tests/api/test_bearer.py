@@ -29,7 +29,7 @@ def test_a_scope_to_write_does_not_read(layer: Layer) -> None:
 
 @pytest.mark.parametrize("authorization", ["Bearer", "Bearer ", "Bearer gtm_wrong", "bearer x y"])
 def test_a_wrong_key_is_nobody_even_beside_a_session(layer: Layer, authorization: str) -> None:
-    manager = User.objects.create_user("manager", is_staff=True)
+    manager = User.objects.create_user("manager", is_superuser=True)
     response = Caller(authorization, manager).get(f"/api/v1/layers/{layer.pk}/scene/")
     assert (response.status_code, response.json()["code"]) == (401, "not_signed_in")
 

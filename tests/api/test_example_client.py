@@ -25,7 +25,7 @@ def test_the_documented_client_goes_from_images_to_a_release(
     for name in ("TABLES", "EXPORTS", "RELEASES", "UPLOADS", "INCOMING", "MEDIA"):
         setattr(settings, f"{name}_ROOT", tmp_path / name.lower())
     make_folder(tmp_path / "incoming" / "square")
-    user = User.objects.create_user("script", is_staff=True)
+    user = User.objects.create_user("script", is_superuser=True)
     _token, key = api_tokens.make(user, "all", ["read", "import", "work", "release"])
     wanted = [live_server.url, key, "incoming/square", "square", "truth", json.dumps({"values": VALUES})]
 

@@ -156,7 +156,7 @@ def test_layers_without_a_common_frame_cannot_be_measured(layer: Layer) -> None:
 
 @pytest.mark.parametrize(
     ("path", "queries"),
-    [("frames/?page_size=10", 5), ("layers/", 4), ("batches/", 4), ("assignments/", 4)],
+    [("frames/?page_size=10", 6), ("layers/", 5), ("batches/", 5), ("assignments/", 5)],
 )
 def test_a_page_costs_the_same_for_many(
     layer: Layer, assignment: Assignment, django_assert_num_queries: Any, path: str, queries: int

@@ -55,7 +55,7 @@ def staff_page(page: Page, live_server: LiveServer, tmp_path: Path, settings: An
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.set_viewport_size({"width": 1920, "height": 1080})
     client = Client()
-    client.force_login(User.objects.create_user("vera", is_staff=True))
+    client.force_login(User.objects.create_user("vera", is_superuser=True))
     session = client.cookies["sessionid"].value
     page.context.add_cookies([{"name": "sessionid", "value": session, "url": live_server.url}])
     yield page

@@ -35,7 +35,7 @@ def test_pages_for_staff_need_nothing_that_is_forbidden(
     bench()
     found = refusals(page)
     client = Client()
-    client.force_login(User.objects.create_user("staff", is_staff=True, is_superuser=True))
+    client.force_login(User.objects.create_user("staff", is_superuser=True))
     session = {"name": "sessionid", "value": client.cookies["sessionid"].value, "url": live_server.url}
     page.context.add_cookies([session])
     for path in (

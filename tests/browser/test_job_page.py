@@ -18,7 +18,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 def job(page: Page, live_server: LiveServer) -> Job:
     """A waiting job, shown to staff."""
     client = Client()
-    client.force_login(User.objects.create_user("vera", is_staff=True))
+    client.force_login(User.objects.create_user("vera", is_superuser=True))
     session = client.cookies["sessionid"].value
     page.context.add_cookies([{"name": "sessionid", "value": session, "url": live_server.url}])
     job = queue.create(Job.Kind.IMPORT_DATASET, None, {})

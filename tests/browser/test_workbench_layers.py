@@ -28,7 +28,7 @@ def layer(live_server: LiveServer) -> Layer:
     frames = [Frame(dataset=dataset, number=FRAME_STEP * index) for index in range(1, FRAMES)]
     Frame.objects.bulk_create(frames)
     made = Layer.objects.create(dataset=dataset, name="truth", kind=Layer.Kind.GROUND_TRUTH)
-    author = get_user_model().objects.create_user("importer", is_staff=True)
+    author = get_user_model().objects.create_user("importer", is_superuser=True)
     rows = [{"person": person, "position": int(GRID.nearest([[3.0 + person, 9.0]])[0])} for person in (1, 2)]
     for frame in Frame.objects.filter(dataset=dataset):
         save_frame(made, frame, author, uuid.uuid4(), 0, rows)

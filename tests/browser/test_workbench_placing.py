@@ -364,7 +364,7 @@ def test_a_height_reaches_frames_of_a_long_layer_that_were_not_loaded_yet(
         Annotation(layer=layer, frame=frame, person=1, position=position)
         for frame in [*street.frames, *later]
     )
-    client.force_login(User.objects.create_user("vera", is_staff=True))
+    client.force_login(User.objects.create_user("vera", is_superuser=True))
     session = client.cookies["sessionid"].value
     page.context.add_cookies([{"name": "sessionid", "value": session, "url": live_server.url}])
     page.goto(f"{live_server.url}/datasets/street/layers/review/")

@@ -19,14 +19,14 @@ def run(*arguments: str) -> str:
 
 
 def test_it_prints_the_key_alone() -> None:
-    User.objects.create_user("ada", is_staff=True)
+    User.objects.create_user("ada", is_superuser=True)
     token = api_tokens.find(run("ada", "--scope", "work", "--scope", "read", "--days", "7"))
     assert token.scopes == ["read", "work"] and token.expires_at is not None
 
 
 @pytest.mark.parametrize("arguments", [("nobody",), ("visitor",), ("ada", "--days", "0")])
 def test_it_refuses_in_words(arguments: tuple[str, ...]) -> None:
-    User.objects.create_user("ada", is_staff=True)
+    User.objects.create_user("ada", is_superuser=True)
     User.objects.create_user("visitor")
     with pytest.raises(CommandError):
         run(*arguments)

@@ -34,7 +34,7 @@ def dataset(tmp_path: Path) -> Dataset:
 
 @pytest.fixture
 def staff(client: Client, dataset: Dataset) -> Client:
-    client.force_login(User.objects.create_user("sam", is_staff=True))
+    client.force_login(User.objects.create_user("sam", is_superuser=True))
     return client
 
 

@@ -1,4 +1,4 @@
-"""Who is asking: the holder of a signed token, or staff with a session."""
+"""Who is asking: the holder of a signed token, or somebody with a role and a session."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from copy import copy
 from typing import Any, ClassVar
 
 from django.contrib.auth.models import AnonymousUser
-from django.http import QueryDict
+from django.http import Http404, QueryDict
 from django.utils.datastructures import MultiValueDict
 from django.utils.translation import gettext as _
 from rest_framework.authentication import BaseAuthentication, SessionAuthentication
@@ -15,9 +15,18 @@ from rest_framework.permissions import SAFE_METHODS, BasePermission
 from rest_framework.request import Request
 from rest_framework.views import APIView
 
-from gtm_hit.models import ApiToken, Assignment, Dataset
+from gtm_hit.models import ApiToken, Assignment, Dataset, Layer
 from gtm_hit.ops import api_tokens
-from gtm_hit.ops.access.roles import may
+from gtm_hit.ops.access.roles import (
+    SEES,
+    Role,
+    Roles,
+    Verdict,
+    has_role,
+    may,
+    may_everywhere,
+    verdict,
+)
 from gtm_hit.ops.work import links
 
 
@@ -59,12 +68,12 @@ class WorkerAuthentication(TokenAuthentication):
 class StaffSession(SessionAuthentication):
     """Answers 401 instead of 403 to strangers, so that the browser knows that signing in helps.
 
-    Nobody's body is read before he is known to be staff and to come from our pages: it may be an archive.
+    Nobody's body is read before he is known to have a role and to come from our pages: it may be an archive.
     """
 
     def authenticate(self, request: Request) -> tuple[Any, Any] | None:
         user = request._request.user
-        if user.is_active and not user.is_staff:
+        if user.is_authenticated and not has_role(user):
             raise PermissionDenied()
         return super().authenticate(request)
 
@@ -105,32 +114,45 @@ class HoldsSeat(BasePermission):
         return isinstance(request.auth, links.Seat)
 
 
-class IsStaff(BasePermission):
-    def has_permission(self, request: Request, view: APIView) -> bool:
-        return bool(request.user and request.user.is_authenticated and request.user.is_staff)
+class StaffMay(BasePermission):
+    """Whoever has the role; at the browser that is all, scripts may only what their tokens are for.
 
-
-class StaffMay(IsStaff):
-    """Staff at the browser may do everything, their scripts only what their tokens are for.
-
-    Reading takes the view's `read_scope`, anything else its `write_scope`.
+    Reading takes the view's `read_role` and `read_scope`, anything else `write_role` and `write_scope`:
+    for the dataset in the address, or for any where there is none.
     """
 
     def has_permission(self, request: Request, view: APIView) -> bool:
-        if not super().has_permission(request, view):
+        if not request.user.is_authenticated:
             return False
         reads = request.method in SAFE_METHODS
-        role = getattr(view, "read_role" if reads else "write_role", None)
-        if role is not None and not may(request.user, role, _dataset_in_address(view)):
+        usual = SEES if reads else Role.ADMINISTRATOR
+        if not _may(request.user, getattr(view, "read_role" if reads else "write_role", usual), view):
             return False
         if isinstance(request.auth, ApiToken):
-            usual = ApiToken.Scope.READ if reads else None
-            needed = getattr(view, "read_scope" if reads else "write_scope", usual)
-            if needed not in request.auth.scopes:
-                raise PermissionDenied(_("The token lacks the scope %(scope)s.") % {"scope": needed})
+            _refuse_out_of_scope(request.auth, view, reads)
         return True
 
 
-def _dataset_in_address(view: APIView) -> Dataset | None:
-    slug = view.kwargs.get("slug")
-    return Dataset.objects.filter(slug=slug).first() if slug else None
+def _may(user: Any, roles: Roles, view: APIView) -> bool:
+    if "slug" in view.kwargs:
+        dataset = Dataset.objects.filter(slug=view.kwargs["slug"]).first()
+    elif "layer" in view.kwargs:
+        layer = Layer.objects.select_related("dataset").filter(pk=view.kwargs["layer"]).first()
+        dataset = layer.dataset if layer else None
+    elif getattr(view, "everywhere", False):
+        return may_everywhere(user, roles)
+    else:
+        return may(user, roles)
+    found = verdict(user, roles, dataset)
+    if found is Verdict.HIDDEN:
+        raise Http404
+    return found is Verdict.MAY
+
+
+def _refuse_out_of_scope(token: ApiToken, view: APIView, reads: bool) -> None:
+    usual = ApiToken.Scope.READ if reads else None
+    needed = getattr(view, "read_scope" if reads else "write_scope", usual)
+    if needed is None:
+        raise PermissionDenied(_("This is not done with a token, but at the browser."))
+    if needed not in token.scopes:
+        raise PermissionDenied(_("The token lacks the scope %(scope)s.") % {"scope": needed})

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, cast
 
 from django.contrib.auth.models import User
+from django.db.models import QuerySet
 from django.http import Http404
 from drf_spectacular.utils import OpenApiResponse
 from rest_framework import exceptions, status
@@ -17,7 +18,7 @@ from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, St
 from gtm_hit.api.common.parsing import BoundedJSONParser
 from gtm_hit.api.common.refusals import refusal, valid
 from gtm_hit.models import ApiToken, Dataset, Layer
-from gtm_hit.ops.access.roles import Role
+from gtm_hit.ops.access.roles import SEES, Role, Roles, layers_of
 
 READS = {401: refusal("not_signed_in"), 403: refusal("forbidden"), 404: refusal("not_found")}
 ASKS = {400: refusal("invalid; details: a list of place and reason"), **READS}
@@ -44,9 +45,11 @@ class StaffView(APIView):
     permission_classes = [StaffMay]
     parser_classes = [BoundedJSONParser]
     write_scope: ApiToken.Scope | None = None
-    # Who may, for the dataset in the address; None: any staff.
-    read_role: Role | None = None
-    write_role: Role | None = None
+    # Who may, for the dataset in the address; several: any of them is enough.
+    read_role: Roles = SEES
+    write_role: Roles = Role.ADMINISTRATOR
+    # Where no dataset is in the address: whether the role for one of them is too little.
+    everywhere = False
 
 
 class Conflict(exceptions.APIException):
@@ -74,21 +77,22 @@ def dataset_or_404(slug: str) -> Dataset:
     return found
 
 
-def layer_or_404(slug: str, name: str) -> Layer:
+def layer_or_404(request: Request, slug: str, name: str) -> Layer:
     # PostgreSQL has no strings with a zero byte and fails instead of finding nothing.
-    found = None if "\x00" in name else _layers(slug).filter(name=name).first()
+    found = None if "\x00" in name else _layers(request, slug).filter(name=name).first()
     if found is None:
         raise Http404
     return found
 
 
-def layer_named(dataset: Dataset, name: str, place: str) -> Layer:
+def layer_named(request: Request, dataset: Dataset, name: str, place: str) -> Layer:
     """A layer that a request names in its body or query."""
-    found = _layers(dataset.slug).filter(name=name).first()
+    found = _layers(request, dataset.slug).filter(name=name).first()
     if found is None:
         raise invalid(place, f"There is no layer {name}.")
     return found
 
 
-def _layers(slug: str) -> Any:
-    return Layer.objects.select_related("dataset").filter(dataset__slug=slug)
+def _layers(request: Request, slug: str) -> QuerySet[Layer]:
+    """Those that the caller may read."""
+    return layers_of(caller(request)).select_related("dataset").filter(dataset__slug=slug)

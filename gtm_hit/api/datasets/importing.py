@@ -29,6 +29,8 @@ from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.geometry.cylinder import FootRule
 from gtm_hit.models import ApiToken, Dataset
 from gtm_hit.models.dataset import name_validator
+from gtm_hit.ops.access.jobs import NOT_YOURS, may_import
+from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.calibration.cameras import UNITS
 from gtm_hit.ops.datasets import job as import_jobs
 from gtm_hit.ops.datasets.options import PRESETS, ImportOptions, scene
@@ -113,8 +115,8 @@ class UploadSerializer(serializers.Serializer[Any]):
     file = serializers.FileField(help_text="a zip of a dataset, or annotations as one file or a zip")
 
 
-def source_named(key: str) -> sources.Source:
-    found = sources.source(key)
+def source_named(request: Request, key: str) -> sources.Source:
+    found = sources.source_of(key, caller(request))
     if found is None:
         raise invalid("source", _("There is no such source; see /api/v1/sources/."))
     return found
@@ -137,13 +139,16 @@ def refuse_impossible(options: dict[str, Any]) -> None:
 
 
 class Sources(StaffView):
+    read_role = Role.MAINTAINER
+    everywhere = True
+
     @extend_schema(
         operation_id="sources",
         summary="Folders and archives imports can be started from",
         responses=answers(200, SourcesSerializer, READS),
     )
     def get(self, request: Request) -> Response:
-        return Response(SourcesSerializer({"results": sources.sources()}).data)
+        return Response(SourcesSerializer({"results": sources.offered(caller(request))}).data)
 
 
 class ArchiveParser(BoundedMultiPartParser):
@@ -153,6 +158,7 @@ class ArchiveParser(BoundedMultiPartParser):
 
 class Uploads(StaffView):
     parser_classes = [ArchiveParser]
+    write_role = Role.MAINTAINER
     write_scope = ApiToken.Scope.IMPORT
 
     @extend_schema(
@@ -172,6 +178,7 @@ class Uploads(StaffView):
 
 
 class Imports(StaffView):
+    write_role = Role.MAINTAINER
     write_scope = ApiToken.Scope.IMPORT
 
     @extend_schema(
@@ -190,13 +197,16 @@ class Imports(StaffView):
     )
     def post(self, request: Request) -> Response:
         options = valid(ImportSerializer(data=request.data))
-        source = source_named(options.pop("source"))
+        if not may_import(caller(request), options["slug"]):
+            raise invalid("slug", NOT_YOURS % {"slug": options["slug"]})
+        source = source_named(request, options.pop("source"))
         options["values"] = dict(options["values"])
         refuse_impossible(options)
         return started(import_jobs.start_import(source, options, caller(request)))
 
 
 class AnnotationImports(StaffView):
+    write_role = Role.MAINTAINER
     write_scope = ApiToken.Scope.IMPORT
 
     @extend_schema(
@@ -215,7 +225,7 @@ class AnnotationImports(StaffView):
     def post(self, request: Request, slug: str) -> Response:
         dataset = dataset_or_404(slug)
         wanted = valid(ImportAnnotationsSerializer(data=request.data))
-        source = source_named(wanted["source"])
+        source = source_named(request, wanted["source"])
         drop = [Kind(name) for name in wanted["drop"]]
         try:
             job = annotation_import.start(

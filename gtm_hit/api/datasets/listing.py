@@ -19,6 +19,7 @@ from gtm_hit.api.common.staff import (
     StaffView,
     answers,
     asked,
+    caller,
     dataset_or_404,
     layer_or_404,
 )
@@ -26,6 +27,7 @@ from gtm_hit.api.workbench.frames import AnnotationSerializer
 from gtm_hit.api.workbench.scene import CameraShape, ImageRefSerializer, image_url
 from gtm_hit.models import Camera, Dataset, Frame, Image, Layer
 from gtm_hit.ops import overview
+from gtm_hit.ops.access.roles import datasets_of, readable
 from gtm_hit.ops.frames.metres import placed
 
 MOST_FRAMES = 500  # whose annotations come in one answer
@@ -136,13 +138,16 @@ class LayersQuery(serializers.Serializer[Any]):
 
 
 class Datasets(StaffView, ListAPIView[Dataset]):
-    queryset = Dataset.objects.order_by("slug")
+    queryset = Dataset.objects.none()
     serializer_class = DatasetShape
     pagination_class = Pages
 
+    def get_queryset(self) -> QuerySet[Dataset]:
+        return datasets_of(caller(self.request)).order_by("slug")
+
     @extend_schema(
         operation_id="datasets",
-        summary="All datasets",
+        summary="The datasets one has to do with",
         responses=answers(200, DatasetShape(many=True), READS),
     )
     def get(self, request: Request, *args: Any, **kwargs: Any) -> Response:
@@ -204,7 +209,8 @@ class Layers(StaffView, ListAPIView[Layer]):
 
     def get_queryset(self) -> QuerySet[Layer]:
         wanted = asked(self.request, LayersQuery)
-        return overview.layers(dataset_or_404(self.kwargs["slug"])).filter(**wanted)
+        found = overview.layers(dataset_or_404(self.kwargs["slug"]))
+        return found.filter(readable(caller(self.request)), **wanted)
 
     @extend_schema(
         operation_id="layers",
@@ -219,7 +225,7 @@ class Layers(StaffView, ListAPIView[Layer]):
 class OneLayer(StaffView):
     @extend_schema(operation_id="layer", summary="A layer", responses=answers(200, LayerShape, READS))
     def get(self, request: Request, slug: str, name: str) -> Response:
-        layer = layer_or_404(slug, name)
+        layer = layer_or_404(request, slug, name)
         return Response(LayerShape(overview.layers(layer.dataset).get(pk=layer.pk)).data)
 
 
@@ -232,7 +238,7 @@ class Annotations(StaffView):
         responses=answers(200, PlacedPageSerializer, ASKS),
     )
     def get(self, request: Request, slug: str, name: str) -> Response:
-        layer = layer_or_404(slug, name)
+        layer = layer_or_404(request, slug, name)
         wanted = asked(request, PlacedQuery)
         rows, following = placed(layer, wanted["from"], wanted["to"], wanted["frames"])
         results = [row.as_dict() for row in rows]

@@ -22,6 +22,7 @@ from gtm_hit.api.datasets.importing import (
 )
 from gtm_hit.api.jobs import JobShape, started
 from gtm_hit.models import ApiToken
+from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.datasets import job
 from gtm_hit.ops.datasets.videos.options import VideoSource
 from gtm_hit.ops.files import sources
@@ -43,6 +44,8 @@ class ImportVideosSerializer(SceneSerializer):
 
 
 class VideoImports(StaffView):
+    write_role = Role.MAINTAINER
+    everywhere = True
     write_scope = ApiToken.Scope.IMPORT
 
     @extend_schema(
@@ -70,7 +73,7 @@ class VideoImports(StaffView):
     )
     def post(self, request: Request) -> Response:
         options = valid(ImportVideosSerializer(data=request.data))
-        source, videos = source_named(options.pop("source")), options.pop("videos")
+        source, videos = source_named(request, options.pop("source")), options.pop("videos")
         start, until = options.pop("start"), options.pop("until")
         refuse_missing(source, videos)
         options["values"] = job.video_values(options["slug"], options["preset"], options["values"])

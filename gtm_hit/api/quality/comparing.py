@@ -32,6 +32,7 @@ from gtm_hit.formats.problems import FormatError
 from gtm_hit.metrics.annotations import MetricsError
 from gtm_hit.metrics.matching import RADIUS
 from gtm_hit.models import ApiToken
+from gtm_hit.ops.access.roles import SEES, Role
 from gtm_hit.ops.quality import agreement, comparing, text_files
 from gtm_hit.ops.quality.comparing import LARGEST_RADIUS, Scope
 from gtm_hit.ops.quality.layer_rows import QualityError
@@ -73,7 +74,7 @@ class AgreementQuery(serializers.Serializer[Any]):
 def compared(request: Request, slug: str) -> comparing.Comparison:
     dataset = dataset_or_404(slug)
     wanted = asked(request, EvaluationQuery)
-    truth, found = (layer_named(dataset, wanted[side], side) for side in ("truth", "found"))
+    truth, found = (layer_named(request, dataset, wanted[side], side) for side in ("truth", "found"))
     scope = comparing.Scope(wanted["scope"])
     try:
         return comparing.compare(
@@ -196,6 +197,7 @@ class TextFilesSerializer(serializers.Serializer[Any]):
 class TextFiles(StaffView):
     parser_classes = [TextFilesParser]
     # Nothing is written: the files are measured and forgotten.
+    write_role = SEES
     write_scope = ApiToken.Scope.READ
 
     @extend_schema(
@@ -243,6 +245,7 @@ class BatchAgreementSerializer(PairSerializer):
 
 
 class Agreement(ListView):
+    read_role = Role.REVIEWER
     serializer_class = BatchAgreementSerializer
 
     @extend_schema(

@@ -58,7 +58,7 @@ class CoverageQuery(serializers.Serializer[Any]):
 
 
 def measured(request: Request, slug: str, name: str) -> tuple[Layer, LayerStatistics, Coverage]:
-    layer = layer_or_404(slug, name)
+    layer = layer_or_404(request, slug, name)
     every = asked(request, CoverageQuery)["every"]
     if not layer.dataset.cameras.exists():
         raise Http404

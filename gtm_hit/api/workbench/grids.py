@@ -16,6 +16,7 @@ from rest_framework.request import Request
 from gtm_hit.api.common.refusals import REFUSALS
 from gtm_hit.api.workbench.images import ContentView
 from gtm_hit.models import Assignment, Camera
+from gtm_hit.ops.access.roles import datasets_of
 from gtm_hit.ops.ground import grid_files
 from gtm_hit.ops.work import links
 
@@ -49,4 +50,6 @@ class GridView(ContentView):
             found = {"dataset": request.auth.batch.dataset_id}
         elif isinstance(request.auth, links.Seat):
             found = {"dataset__slug": settings.TUTORIAL_DATASET}
+        else:
+            found = {"dataset__in": datasets_of(request.user)}
         return Camera.objects.filter(**found).select_related("dataset")

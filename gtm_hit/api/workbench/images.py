@@ -26,6 +26,7 @@ from gtm_hit.api.common.authentication import (
 )
 from gtm_hit.api.common.refusals import REFUSALS
 from gtm_hit.models import Assignment, Image
+from gtm_hit.ops.access.roles import datasets_of
 from gtm_hit.ops.tutorial import lesson
 from gtm_hit.ops.work import links
 
@@ -69,6 +70,8 @@ class ImageView(ContentView):
             images = images.filter(frame__batches=request.auth.batch_id)
         elif isinstance(request.auth, links.Seat):
             images = images.filter(frame__in=lesson.shown_frames())
+        else:
+            images = images.filter(frame__dataset__in=datasets_of(request.user))
         if not images.exists():
             raise Http404
         etag = f'"{digest}"'

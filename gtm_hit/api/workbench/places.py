@@ -24,11 +24,13 @@ from gtm_hit.api.common.authentication import (
 )
 from gtm_hit.api.common.parsing import BoundedJSONParser
 from gtm_hit.models import ApiToken, Assignment, Dataset, Frame, Layer, Worker
+from gtm_hit.ops.access.roles import CARES, SEES, layers_of, may
 from gtm_hit.ops.frames import parts
 from gtm_hit.ops.frames.saving import Author
 from gtm_hit.ops.work import assignments, links
 
 PROTECTED = "protected"
+KEPT_KINDS = {Layer.Kind.IMPORTED, Layer.Kind.GROUND_TRUTH}
 
 
 @dataclass(frozen=True)
@@ -77,7 +79,7 @@ def layer_start_place(request: Request, **kwargs: Any) -> Place:
 
 
 def found_layer(request: Request, pk: int, in_parts: bool, first: int | None) -> Place:
-    found = Layer.objects.select_related("dataset").filter(pk=pk).first()
+    found = layers_of(request.user).select_related("dataset").filter(pk=pk).first()
     if found is None:
         raise Http404
     assignment = Assignment.objects.select_related("batch__dataset").filter(layer=found).first()
@@ -100,10 +102,10 @@ def found_layer(request: Request, pk: int, in_parts: bool, first: int | None) ->
 def _read_only_reason(request: Request, layer: Layer) -> str:
     if layer.kind == Layer.Kind.ASSIGNMENT:
         return "not_author"
-    # A script that works through layers must not get at what others are measured by.
-    if not isinstance(request.auth, ApiToken):
+    # A script that works through layers must not get at what others are measured by, nor must a reviewer.
+    if not isinstance(request.auth, ApiToken) and may(request.user, CARES, layer.dataset):
         return ""
-    kept = layer.hidden or layer.kind == Layer.Kind.IMPORTED or layer.releases.exists()
+    kept = layer.hidden or layer.kind in KEPT_KINDS or layer.releases.exists()
     return PROTECTED if kept else ""
 
 
@@ -113,6 +115,7 @@ class PlacedView(APIView):
     authentication_classes: Sequence[type[BaseAuthentication]] = [AssignmentAuthentication]
     permission_classes: Sequence[Any] = [HoldsAssignment]
     parser_classes = [BoundedJSONParser]
+    write_role = SEES
     write_scope = ApiToken.Scope.WORK
     find: Callable[..., Place] = staticmethod(assignment_place)
 

@@ -12,6 +12,7 @@ from django.utils import timezone
 from gtm_hit.formats.calibration.cameras_json import camera_facts
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Dataset, Job
+from gtm_hit.ops.access.roles import Somebody, may_know
 from gtm_hit.ops.calibration import replacing, versions
 from gtm_hit.ops.calibration.replacing import ReplacementError
 from gtm_hit.ops.jobs import queue
@@ -66,6 +67,20 @@ def confirm(job: Job, user: User | None = None) -> None:
         }
         job.result = {**job.result, **confirmed}
         job.save(update_fields=["result"])
+
+
+def seen_by(user: Somebody, job: Job) -> dict[str, Any]:
+    """What a finished job found, without people of layers that somebody may not read."""
+    assert job.dataset is not None
+    kept = set(job.dataset.layers.filter(hidden=True).values_list("name", flat=True))
+    if not kept or may_know(user, job.dataset):
+        return job.result
+    worst = [moved for moved in job.result["worst"] if moved["layer"] not in kept]
+    picture = job.result["picture"]
+    if picture["layer"] in kept:
+        nobody: list[Any] = [[] for _ in picture["before"]]
+        picture = {**picture, "layer": None, "before": nobody, "after": nobody}
+    return {**job.result, "worst": worst, "picture": picture}
 
 
 def cameras_of(job: Job) -> list[Camera]:

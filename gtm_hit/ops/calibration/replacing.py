@@ -128,12 +128,15 @@ def _worst(moved: Moved) -> dict[str, Any]:
 
 
 def _picture(dataset: Dataset, comparison: Comparison) -> dict[str, Any]:
-    """The fullest frame of any layer, its boxes before and after; a lattice where nobody is annotated."""
+    """The fullest frame of any layer, hidden ones last, with its boxes before and after.
+
+    A lattice where nobody is annotated.
+    """
     fullest = (
         Annotation.objects.filter(layer__dataset=dataset, layer__unfinished=False)
         .values("layer", "frame")
         .annotate(people=Count("pk"))
-        .order_by("-people", "frame__number")
+        .order_by("layer__hidden", "-people", "frame__number")
         .first()
     )
     if fullest is None:

@@ -29,6 +29,7 @@ from gtm_hit.formats.dataset_folder import natural_key
 from gtm_hit.formats.files import replacing
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList
 from gtm_hit.models import Job
+from gtm_hit.ops.access.roles import Role, Somebody, may_everywhere
 from gtm_hit.ops.jobs.progress import Steps
 
 MEGABYTE = 1_000_000
@@ -76,6 +77,17 @@ def sources() -> list[Source]:
             if path.name[0] != "." and inside and (folder or archive):
                 found.append(Source(f"{kind}/{path.name}", path))
     return found
+
+
+def offered(user: Somebody) -> list[Source]:
+    """Those somebody may choose from a list: whoever has to do with one dataset only sends his own."""
+    return sources() if may_everywhere(user, Role.MAINTAINER) else []
+
+
+def source_of(key: str, user: Somebody) -> Source | None:
+    """The source of this name, if somebody may use it: an upload's name is known to who sent it."""
+    found = source(key)
+    return found if found and (found.was_uploaded or may_everywhere(user, Role.MAINTAINER)) else None
 
 
 def source(key: str) -> Source | None:

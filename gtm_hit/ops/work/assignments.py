@@ -208,7 +208,9 @@ def explained(reason: str) -> str:
     texts = {
         "submitted": _("This batch is submitted; it can be looked at, not changed."),
         "expired": _("The time for this batch has run out. Open your start page to continue with it."),
-        "protected": _("Imported, hidden and released layers are changed by staff at the browser only."),
+        "protected": _(
+            "Imported, hidden and released layers are changed by managers and maintainers, at the browser."
+        ),
         "not_author": _("A worker's annotations are changed by that worker only."),
     }
     return texts.get(reason, reason)

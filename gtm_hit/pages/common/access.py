@@ -7,51 +7,59 @@ from typing import Any
 from django.contrib.auth.models import User
 from django.contrib.auth.views import redirect_to_login
 from django.core.exceptions import PermissionDenied
-from django.http import HttpRequest, HttpResponseBase
+from django.http import Http404, HttpRequest, HttpResponseBase
 from django.urls import reverse
+from django.utils.translation import gettext as _
 
 from gtm_hit.models import Dataset
-from gtm_hit.ops.access.roles import Role, may
+from gtm_hit.ops.access.roles import Roles, Verdict, may, may_everywhere, verdict
 
 View = Callable[..., HttpResponseBase]
 
 
 class StaffRequest(HttpRequest):
-    """What a view behind `staff_only` is called with."""
+    """What a view behind `needs` is called with."""
 
     user: User
 
 
-def staff_only(view: View) -> View:
-    """Everybody else is sent to the login page, and from there back to the page asked for."""
-
-    @wraps(view)
-    def guarded(request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponseBase:
-        if request.user.is_active and request.user.is_staff:
-            return view(request, *args, **kwargs)
-        # A form cannot be sent again after the login, so its address is no place to return to.
-        wanted = request.get_full_path() if request.method in {"GET", "HEAD"} else reverse("home")
-        return redirect_to_login(wanted)
-
-    return guarded
+def to_login(request: HttpRequest) -> HttpResponseBase:
+    """And from there back to the page asked for."""
+    # A form cannot be sent again after the login, so its address is no place to return to.
+    wanted = request.get_full_path() if request.method in {"GET", "HEAD"} else reverse("home")
+    return redirect_to_login(wanted)
 
 
-def needs(role: Role) -> Callable[[View], View]:
-    """Only for who has the role for the dataset in the address (`slug`), or for any if there is none.
+def needs(roles: Roles, write: Roles | None = None, everywhere: bool = False) -> Callable[[View], View]:
+    """Only for who has one of the roles for the dataset in the address (`slug`), or for any if there is none.
 
-    Strangers are sent to the login page; who is known but may not gets 403.
+    `write`: what anything but reading takes. `everywhere`: the role for one dataset is not enough.
+    Strangers are sent to the login page; who is known but may not gets 403, and 404 for a dataset he has
+    nothing to do with.
     """
 
     def guard(view: View) -> View:
         @wraps(view)
         def guarded(request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponseBase:
             if not request.user.is_authenticated:
-                return staff_only(view)(request, *args, **kwargs)
-            dataset = Dataset.objects.filter(slug=kwargs["slug"]).first() if "slug" in kwargs else None
-            if not may(request.user, role, dataset):
-                raise PermissionDenied
+                return to_login(request)
+            reads = request.method in {"GET", "HEAD"}
+            refuse_unless_may(request, roles if reads or write is None else write, everywhere, **kwargs)
             return view(request, *args, **kwargs)
 
         return guarded
 
     return guard
+
+
+def refuse_unless_may(request: HttpRequest, roles: Roles, everywhere: bool = False, **address: Any) -> None:
+    if "slug" not in address:
+        if not (may_everywhere if everywhere else may)(request.user, roles):
+            raise PermissionDenied
+        return
+    slug = address["slug"]
+    found = verdict(request.user, roles, Dataset.objects.filter(slug=slug).first())
+    if found is Verdict.HIDDEN:
+        raise Http404(_("There is no dataset “%(slug)s”.") % {"slug": slug})
+    if found is Verdict.MAY_NOT:
+        raise PermissionDenied

@@ -4,12 +4,14 @@ from pathlib import Path
 from typing import Any
 
 from django import forms
+from django.contrib.auth.models import User
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_lazy
 
 from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.geometry.cylinder import FootRule
 from gtm_hit.models import Dataset
+from gtm_hit.ops.access.jobs import NOT_YOURS, may_import
 from gtm_hit.ops.calibration.cameras import UNITS
 from gtm_hit.ops.datasets import job
 from gtm_hit.ops.datasets.options import PRESETS, REQUIRED, ImportOptions, SceneValues, scene
@@ -118,9 +120,16 @@ class DatasetForm(SceneForm):
         label=gettext_lazy("Import the frame numbers between the steps too"), required=False
     )
 
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
+    def __init__(self, user: User, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        choose(self.fields["source"], sources.sources())
+        self.user = user
+        choose(self.fields["source"], sources.offered(user))
+
+    def clean_slug(self) -> str:
+        slug: str = self.cleaned_data["slug"]
+        if not may_import(self.user, slug):
+            raise forms.ValidationError(NOT_YOURS % {"slug": slug})
+        return slug
 
     def clean(self) -> dict[str, Any]:
         cleaned = super().clean()

@@ -10,10 +10,11 @@ from django.views.decorators.http import require_http_methods
 
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.models import Job
-from gtm_hit.ops import overview
+from gtm_hit.ops.access.jobs import jobs_of
+from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.datasets import job as import_jobs
 from gtm_hit.ops.files import sources
-from gtm_hit.pages.common.access import StaffRequest, staff_only
+from gtm_hit.pages.common.access import StaffRequest, needs
 from gtm_hit.pages.common.uploads import takes_uploads
 from gtm_hit.pages.datasets.forms import DatasetForm, VideosForm
 
@@ -22,12 +23,12 @@ KINDS = [Job.Kind.IMPORT_DATASET, Job.Kind.IMPORT_VIDEOS]
 
 
 @require_http_methods(["GET", "HEAD", "POST"])
-@takes_uploads
+@takes_uploads(Role.MAINTAINER)
 def new_dataset(request: StaffRequest) -> HttpResponse:
-    form = DatasetForm(request.POST or None, request.FILES or None)
+    form = DatasetForm(request.user, request.POST or None, request.FILES or None)
     if request.method == "POST" and form.is_valid() and (source := _chosen(form)):
         return redirect("job", pk=import_jobs.start_import(source, form.options(), request.user).pk)
-    found = overview.jobs().filter(kind__in=KINDS)
+    found = jobs_of(request.user).filter(kind__in=KINDS)
     context = {
         "section": "datasets",
         "tab": "images",
@@ -41,7 +42,7 @@ def new_dataset(request: StaffRequest) -> HttpResponse:
 
 
 @require_http_methods(["GET", "HEAD", "POST"])
-@staff_only
+@needs(Role.MAINTAINER, everywhere=True)
 def new_videos(request: StaffRequest) -> HttpResponse:
     folder = sources.source(request.GET.get("source", ""))
     initial = {"source": folder.key, "videos": _suggested(folder)} if folder else {}

@@ -9,13 +9,14 @@ from django.views.decorators.http import require_safe
 
 from gtm_hit.models import Dataset
 from gtm_hit.ops import overview
+from gtm_hit.ops.access.roles import SEES, Somebody
 from gtm_hit.ops.ground import coverage
-from gtm_hit.pages.common.access import staff_only
+from gtm_hit.pages.common.access import needs
 from gtm_hit.pages.datasets.ground_map import GroundMap
 
 
-def summary_or_404(slug: str) -> overview.DatasetSummary:
-    summary = overview.dataset(slug)
+def summary_or_404(slug: str, user: Somebody) -> overview.DatasetSummary:
+    summary = overview.dataset(slug, user)
     if summary is None:
         raise Http404(_("There is no dataset “%(slug)s”.") % {"slug": slug})
     return summary
@@ -30,15 +31,16 @@ def dataset_or_404(slug: str) -> Dataset:
 
 
 @require_safe
-@staff_only
+@needs(SEES)
 def datasets(request: HttpRequest) -> HttpResponse:
-    return render(request, "staff/datasets.html", {"section": "datasets", "summaries": overview.datasets()})
+    context = {"section": "datasets", "summaries": overview.datasets(request.user)}
+    return render(request, "staff/datasets.html", context)
 
 
 @require_safe
-@staff_only
+@needs(SEES)
 def dataset(request: HttpRequest, slug: str) -> HttpResponse:
-    summary = summary_or_404(slug)
+    summary = summary_or_404(slug, request.user)
     seen = coverage.coverage(summary.dataset) if summary.cameras else None
     context = {
         "section": "datasets",
@@ -52,7 +54,7 @@ def dataset(request: HttpRequest, slug: str) -> HttpResponse:
 
 
 @require_safe
-@staff_only
+@needs(SEES)
 @cache_control(private=True, max_age=31536000, immutable=True)
 def coverage_picture(request: HttpRequest, slug: str, digest: str) -> HttpResponse:
     """The address carries the digest of everything the picture is made from, so it never changes."""

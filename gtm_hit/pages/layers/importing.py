@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from django import forms
 from django.conf import settings
+from django.contrib.auth.models import User
 from django.http import HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import path
@@ -14,7 +15,8 @@ from django.views.decorators.http import require_http_methods
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.models import Job
 from gtm_hit.models.dataset import name_validator
-from gtm_hit.ops import overview
+from gtm_hit.ops.access.jobs import jobs_of
+from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.files import sources
 from gtm_hit.ops.layers import job as importing
 from gtm_hit.ops.layers.findings import Kind
@@ -56,9 +58,9 @@ class AnnotationsForm(forms.Form):
         widget=forms.CheckboxSelectMultiple,
     )
 
-    def __init__(self, *args: object, **kwargs: object) -> None:
+    def __init__(self, user: User, *args: object, **kwargs: object) -> None:
         super().__init__(*args, **kwargs)  # type: ignore[arg-type]
-        found = [(each.key, each.key) for each in sources.sources()]
+        found = [(each.key, each.key) for each in sources.offered(user)]
         self.fields["source"].choices = [("", "–"), *found]  # type: ignore[attr-defined]
 
     def clean(self) -> None:
@@ -68,10 +70,10 @@ class AnnotationsForm(forms.Form):
 
 
 @require_http_methods(["GET", "HEAD", "POST"])
-@takes_uploads
+@takes_uploads(Role.MAINTAINER)
 def import_annotations(request: StaffRequest, slug: str) -> HttpResponse:
     dataset = dataset_or_404(slug)
-    form = AnnotationsForm(request.POST or None, request.FILES or None)
+    form = AnnotationsForm(request.user, request.POST or None, request.FILES or None)
     if request.method == "POST" and form.is_valid() and (source := _chosen(form)):
         chosen = form.cleaned_data
         drop = [Kind(name) for name in chosen["drop"]]
@@ -91,7 +93,7 @@ def import_annotations(request: StaffRequest, slug: str) -> HttpResponse:
         "incoming": settings.INCOMING_ROOT,
         "most_megabytes": settings.MAX_UPLOAD_MB,
         "most_bytes": sources.most_bytes(),
-        "jobs": overview.jobs().filter(dataset=dataset, kind=Job.Kind.IMPORT_ANNOTATIONS)[:JOBS_SHOWN],
+        "jobs": jobs_of(request.user).filter(dataset=dataset, kind=Job.Kind.IMPORT_ANNOTATIONS)[:JOBS_SHOWN],
     }
     return render(request, "staff/annotation_import.html", context)
 

@@ -7,30 +7,30 @@ from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import path
 from django.views.decorators.http import require_POST, require_safe
 
-from gtm_hit.models import Layer
 from gtm_hit.ops import overview
+from gtm_hit.ops.access.roles import CARES, SEES, layers_of, readable
 from gtm_hit.ops.exports import exporting
 from gtm_hit.ops.exports.formats.registry import DEFAULT_FORMATS, FORMATS
 from gtm_hit.ops.frames import parts
-from gtm_hit.pages.common.access import StaffRequest, staff_only
+from gtm_hit.pages.common.access import StaffRequest, needs
 from gtm_hit.pages.datasets.listing import dataset_or_404
 
 ROWS_PER_PAGE = 100
 
 
 @require_safe
-@staff_only
+@needs(SEES)
 def dataset_layers(request: HttpRequest, slug: str) -> HttpResponse:
     dataset = dataset_or_404(slug)
     frames = dataset.frames.count()
-    page = Paginator(overview.layers(dataset), ROWS_PER_PAGE).get_page(request.GET.get("page"))
+    pages = Paginator(overview.layers(dataset).filter(readable(request.user)), ROWS_PER_PAGE)
     context = {
         "section": "datasets",
         "tab": "layers",
         "dataset": dataset,
         "frames": frames,
         "long": parts.is_long(frames),
-        "page": page,
+        "page": pages.get_page(request.GET.get("page")),
         "formats": FORMATS,
         "default_formats": DEFAULT_FORMATS,
     }
@@ -38,9 +38,11 @@ def dataset_layers(request: HttpRequest, slug: str) -> HttpResponse:
 
 
 @require_POST
-@staff_only
+@needs(CARES)
 def export_layer(request: StaffRequest, slug: str, name: str) -> HttpResponse:
-    layer = get_object_or_404(Layer.objects.select_related("dataset"), dataset__slug=slug, name=name)
+    layer = get_object_or_404(
+        layers_of(request.user).select_related("dataset"), dataset__slug=slug, name=name
+    )
     formats = request.POST.getlist("format") or DEFAULT_FORMATS
     try:
         return redirect("job", pk=exporting.start(layer, request.user, formats).pk)

@@ -22,6 +22,7 @@ from django.views.decorators.http import require_safe
 from gtm_hit.metrics.figures import score_curve
 from gtm_hit.metrics.matching import RADIUS
 from gtm_hit.models import Layer
+from gtm_hit.ops.access.roles import SEES, Role, may
 from gtm_hit.ops.quality import agreement
 from gtm_hit.ops.quality.comparing import (
     LARGEST_RADIUS,
@@ -32,7 +33,7 @@ from gtm_hit.ops.quality.comparing import (
     frame_lines,
 )
 from gtm_hit.ops.quality.layer_rows import QualityError
-from gtm_hit.pages.common.access import staff_only
+from gtm_hit.pages.common.access import needs
 from gtm_hit.pages.common.layer_choice import LayerChoice
 from gtm_hit.pages.datasets.listing import dataset_or_404
 from gtm_hit.pages.quality.statistics import attachment
@@ -76,7 +77,7 @@ class Asked:
 def asked_for(request: HttpRequest, slug: str) -> Asked:
     dataset = dataset_or_404(slug)
     given = {name: request.GET[name] for name in CompareForm.base_fields if request.GET.get(name)}
-    choice = LayerChoice(dataset, given.get("a"), given.get("b"))
+    choice = LayerChoice(dataset, request.user, given.get("a"), given.get("b"))
     first = [layer.name for layer in choice.listed[:2]]
     usual = dict(zip("ab", first, strict=False)) | {"radius": RADIUS, "frames": Scope.BOTH.value, "start": 0}
     form = CompareForm({**usual, **given})
@@ -105,7 +106,7 @@ def compared(context: dict[str, Any], wanted: dict[str, Any], choice: LayerChoic
 
 @require_safe
 @never_cache
-@staff_only
+@needs(SEES)
 def compare_layers(request: HttpRequest, slug: str) -> HttpResponse:
     asked = asked_for(request, slug)
     context = {**asked.context, "problem": asked.problem, **agreements(request, asked)}
@@ -125,6 +126,8 @@ def compare_layers(request: HttpRequest, slug: str) -> HttpResponse:
 
 def agreements(request: HttpRequest, asked: Asked) -> dict[str, Any]:
     dataset = asked.context["dataset"]
+    if not may(request.user, Role.REVIEWER, dataset):
+        return {}
     pages = Paginator(agreement.shared_batches(dataset), BATCHES_PER_PAGE)
     page = pages.get_page(request.GET.get("batches"))
     numbers = list(page.object_list)
@@ -142,7 +145,7 @@ def curve(asked: Asked) -> str:
 
 @require_safe
 @never_cache
-@staff_only
+@needs(SEES)
 def compare_curve(request: HttpRequest, slug: str) -> HttpResponse:
     asked = asked_for(request, slug)
     return attachment(curve(asked), "image/svg+xml", f"{base_name(asked)}-curve.svg")
@@ -150,7 +153,7 @@ def compare_curve(request: HttpRequest, slug: str) -> HttpResponse:
 
 @require_safe
 @never_cache
-@staff_only
+@needs(SEES)
 def compare_csv(request: HttpRequest, slug: str) -> HttpResponse:
     asked = asked_for(request, slug)
     lines = frame_lines(asked.required()[1])
@@ -164,7 +167,7 @@ def compare_csv(request: HttpRequest, slug: str) -> HttpResponse:
 
 @require_safe
 @never_cache
-@staff_only
+@needs(SEES)
 def compare_view(request: HttpRequest, slug: str) -> HttpResponse:
     asked = asked_for(request, slug)
     (truth, found), comparison = asked.required()

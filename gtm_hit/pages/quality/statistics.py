@@ -18,6 +18,7 @@ from django.views.decorators.http import require_safe
 
 from gtm_hit.metrics.coverage import Coverage
 from gtm_hit.models import Layer
+from gtm_hit.ops.access.roles import SEES
 from gtm_hit.ops.quality.statistics.figures import FIGURES, figure
 from gtm_hit.ops.quality.statistics.files import numbers_csv
 from gtm_hit.ops.quality.statistics.measuring import (
@@ -27,7 +28,7 @@ from gtm_hit.ops.quality.statistics.measuring import (
     layer_statistics,
     unmeasurable,
 )
-from gtm_hit.pages.common.access import staff_only
+from gtm_hit.pages.common.access import needs
 from gtm_hit.pages.common.layer_choice import LayerChoice
 from gtm_hit.pages.datasets.listing import dataset_or_404
 
@@ -65,7 +66,7 @@ class Asked:
 def asked_for(request: HttpRequest, slug: str) -> Asked:
     dataset = dataset_or_404(slug)
     name = request.GET.get("layer")
-    choice = LayerChoice(dataset, name)
+    choice = LayerChoice(dataset, request.user, name)
     first = choice.listed[0].name if choice.listed else ""
     form = StatisticsForm({"layer": name or first, "every": request.GET.get("every") or EVERY})
     form.fields["layer"].choices = choice.choices  # type: ignore[attr-defined]
@@ -84,7 +85,7 @@ def asked_for(request: HttpRequest, slug: str) -> Asked:
 
 @require_safe
 @never_cache
-@staff_only
+@needs(SEES)
 def statistics(request: HttpRequest, slug: str) -> HttpResponse:
     asked = asked_for(request, slug)
     if asked.layer is None:
@@ -118,7 +119,7 @@ def distribution_rows(found: LayerStatistics) -> list[tuple[str, str, Any, int]]
 
 @require_safe
 @never_cache
-@staff_only
+@needs(SEES)
 def statistics_figure(request: HttpRequest, slug: str, name: str) -> HttpResponse:
     if name not in FIGURES:
         raise Http404(_("There is no figure “%(name)s”.") % {"name": name})
@@ -128,7 +129,7 @@ def statistics_figure(request: HttpRequest, slug: str, name: str) -> HttpRespons
 
 @require_safe
 @never_cache
-@staff_only
+@needs(SEES)
 def statistics_csv(request: HttpRequest, slug: str) -> HttpResponse:
     asked = asked_for(request, slug)
     table = numbers_csv(*asked.measured())

@@ -17,6 +17,7 @@ from django.views.decorators.http import require_http_methods
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.metrics.annotations import MetricsError
 from gtm_hit.metrics.matching import RADIUS
+from gtm_hit.ops.access.roles import SEES
 from gtm_hit.ops.quality.text_files import MOST_UPLOADED, evaluate_uploads
 from gtm_hit.pages.common.uploads import takes_uploads
 
@@ -46,7 +47,7 @@ class TextFilesForm(forms.Form):
 
 @require_http_methods(["GET", "HEAD", "POST"])
 @never_cache
-@takes_uploads
+@takes_uploads(SEES)
 def evaluate_files(request: HttpRequest) -> HttpResponse:
     form = TextFilesForm(request.POST or None, request.FILES or None)
     scores: dict[str, Any] = {}

@@ -10,8 +10,9 @@ from django.utils.translation import gettext_lazy, ngettext
 from django.views.decorators.http import require_http_methods, require_POST
 
 from gtm_hit.ops import overview
+from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.work import batches, entry_links, links
-from gtm_hit.pages.common.access import staff_only
+from gtm_hit.pages.common.access import needs
 from gtm_hit.pages.datasets.listing import dataset_or_404
 
 ROWS_PER_PAGE = 100
@@ -27,7 +28,7 @@ class MakeBatchesForm(forms.Form):
 
 
 @require_http_methods(["GET", "HEAD", "POST"])
-@staff_only
+@needs(Role.MANAGER)
 def dataset_batches(request: HttpRequest, slug: str) -> HttpResponse:
     dataset = dataset_or_404(slug)
     form = MakeBatchesForm(request.POST or None)
@@ -52,7 +53,7 @@ def dataset_batches(request: HttpRequest, slug: str) -> HttpResponse:
 
 
 @require_POST
-@staff_only
+@needs(Role.MANAGER)
 def switch_link(request: HttpRequest, slug: str) -> HttpResponse:
     switch = {"close": entry_links.close, "open": entry_links.reopen}.get(request.POST.get("switch", ""))
     if switch is not None:

@@ -14,12 +14,13 @@ from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods, require_POST, require_safe
 
 from gtm_hit.crowd.entry import is_preview, worker_id
-from gtm_hit.models import Layer, Worker
+from gtm_hit.models import Worker
+from gtm_hit.ops.access.roles import SEES, layers_of
 from gtm_hit.ops.frames import parts
 from gtm_hit.ops.tutorial import lesson
 from gtm_hit.ops.work import assignments, limits, links, unsaved_leases, workers
 from gtm_hit.pages.common import browsers
-from gtm_hit.pages.common.access import staff_only
+from gtm_hit.pages.common.access import needs
 from gtm_hit.pages.common.address import client_address
 from gtm_hit.pages.common.catalog import workbench_catalog
 from gtm_hit.pages.common.modules import imported_by
@@ -171,10 +172,10 @@ def annotate(request: HttpRequest, token: str) -> HttpResponse:
 
 
 @require_safe
-@staff_only
+@needs(SEES)
 @never_cache
 def layer(request: HttpRequest, slug: str, name: str) -> HttpResponse:
-    found = get_object_or_404(Layer, dataset__slug=slug, name=name)
+    found = get_object_or_404(layers_of(request.user), dataset__slug=slug, name=name)
     home_url = reverse("dataset-layers", args=[slug])
     asked = request.GET.get("from", "")
     part = parts.part_of(found, int(asked) if asked.isdecimal() and len(asked) < 10 else None)

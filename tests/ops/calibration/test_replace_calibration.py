@@ -175,7 +175,7 @@ def test_it_refuses_when_the_calibration_was_replaced_since(dataset: Dataset) ->
 
 
 def save(layer: Layer, dataset: Dataset) -> None:
-    user = User.objects.create_user("sam", is_staff=True)
+    user = User.objects.create_user("sam", is_superuser=True)
     saving.save_frame(layer, dataset.frames.get(number=0), user, uuid.uuid4(), 0, [row(1, 1220)])
 
 

@@ -17,7 +17,7 @@ PASSWORD = "long enough"
 
 @pytest.fixture(autouse=True)
 def vera(db: None) -> User:
-    return User.objects.create_user("vera", password=PASSWORD, is_staff=True)
+    return User.objects.create_user("vera", password=PASSWORD, is_superuser=True)
 
 
 def attempt(password: str, name: str = "vera", address: str = "192.0.2.1") -> Any:
@@ -50,7 +50,7 @@ def test_after_the_time_told_the_door_is_open_again() -> None:
 
 
 def test_others_at_the_address_and_she_elsewhere_may_still_come_in() -> None:
-    User.objects.create_user("ada", password=PASSWORD, is_staff=True)
+    User.objects.create_user("ada", password=PASSWORD, is_superuser=True)
     fail(login.PAIR.most)
     assert attempt(PASSWORD, name="ada").status_code == 302
     assert attempt(PASSWORD, address="192.0.2.2").status_code == 302

@@ -21,7 +21,7 @@ PAGES = [
 @pytest.fixture
 def staff(client: Client) -> Client:
     Dataset.objects.create(slug="square", name="Square")
-    client.force_login(User.objects.create_user("sam", is_staff=True))
+    client.force_login(User.objects.create_user("sam", is_superuser=True))
     return client
 
 

@@ -37,7 +37,7 @@ def dataset() -> Dataset:
 
 @pytest.fixture
 def staff(client: Client) -> Client:
-    client.force_login(User.objects.create_user("ada", password="x", is_staff=True))
+    client.force_login(User.objects.create_user("ada", password="x", is_superuser=True))
     return client
 
 
@@ -116,10 +116,10 @@ def test_a_form_with_an_error_starts_nothing(staff: Client, dataset: Dataset, ch
     assert not Job.objects.exists()
 
 
-def test_only_staff_may_import(client: Client, dataset: Dataset) -> None:
+def test_an_account_without_a_role_may_not_import(client: Client, dataset: Dataset) -> None:
     client.force_login(User.objects.create_user("guest", password="x"))
     values = {"file": csv("frame,x,y\n5,0,0\n"), "format": "csv", "layer": "theirs"}
-    assert client.get(PAGE).status_code == client.post(PAGE, values).status_code == 302
+    assert client.get(PAGE).status_code == client.post(PAGE, values).status_code == 403
     assert not Job.objects.exists()
 
 

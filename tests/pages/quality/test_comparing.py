@@ -46,7 +46,7 @@ def layers(db: None) -> tuple[Layer, Layer]:
 
 @pytest.fixture
 def staff(client: Client, db: None) -> Client:
-    client.force_login(User.objects.create_user("vera", is_staff=True))
+    client.force_login(User.objects.create_user("vera", is_superuser=True))
     return client
 
 
@@ -64,11 +64,11 @@ def test_strangers_are_sent_to_the_login_and_back(
 
 
 @pytest.mark.parametrize("address", PAGES)
-def test_an_account_that_is_not_staff_sees_nothing(
+def test_an_account_without_a_role_sees_nothing(
     client: Client, layers: tuple[Layer, Layer], address: str
 ) -> None:
     client.force_login(User.objects.create_user("curious"))
-    assert client.get(address).status_code == 302
+    assert client.get(address).status_code == 403
 
 
 @pytest.mark.parametrize("address", PAGES)

@@ -17,7 +17,7 @@ def staff(db: None, client: Client, settings: Any, tmp_path: Path) -> Client:
     for name in ("MEDIA", "TABLES"):
         setattr(settings, f"{name}_ROOT", tmp_path / name.lower())
     import_dataset(options(make_folder(tmp_path / "square")))
-    client.force_login(User.objects.create_user("sam", is_staff=True))
+    client.force_login(User.objects.create_user("sam", is_superuser=True))
     client.raise_request_exception = False
     return client
 

@@ -11,7 +11,7 @@ from django.test import Client
 @pytest.fixture
 def staff(db: None) -> Client:
     client = Client()
-    client.force_login(User.objects.create_user("manager", is_staff=True))
+    client.force_login(User.objects.create_user("manager", is_superuser=True))
     return client
 
 
