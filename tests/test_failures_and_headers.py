@@ -136,13 +136,13 @@ WRONG = {"HTTP_X_CSRFTOKEN": "x" * 32}
 
 @pytest.mark.parametrize("path", ["/api/v1/uploads/", "/api/v1/evaluations/"])
 @pytest.mark.parametrize(
-    ("is_staff", "header"), [(False, {}), (True, {}), (True, {"HTTP_X_CSRFTOKEN": "x" * 32})]
+    ("has_role", "header"), [(False, {}), (True, {}), (True, {"HTTP_X_CSRFTOKEN": "x" * 32})]
 )
 def test_a_body_is_not_read_before_its_sender_is_known(
-    body: dict[str, Any], path: str, is_staff: bool, header: dict[str, str]
+    body: dict[str, Any], path: str, has_role: bool, header: dict[str, str]
 ) -> None:
     client = Client(enforce_csrf_checks=True)
-    client.force_login(User.objects.create_user("somebody", is_staff=is_staff))
+    client.force_login(User.objects.create_user("somebody", is_superuser=has_role))
     client.cookies["csrftoken"] = "y" * 32
     kind = "multipart/form-data; boundary=b"
     answer = client.generic("POST", path, content_type=kind, **{**body, **header})  # type: ignore[arg-type]

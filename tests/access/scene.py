@@ -1,0 +1,98 @@
+"""Two datasets, and what the addresses of the table are filled with."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from django.contrib.auth.models import User
+
+from gtm_hit.models import Assignment, Dataset, Job, Layer, Release
+from gtm_hit.ops.access import granting
+from gtm_hit.ops.access.roles import Role
+from gtm_hit.ops.exports import exporting
+from gtm_hit.ops.jobs import queue
+from gtm_hit.ops.work import assignments, batches, links
+from tests.work_scene import make_dataset, make_layer, make_worker, row, save
+
+HERE, ELSEWHERE = "square", "elsewhere"
+SECRET = "secret-truth"  # the name of the hidden layers
+
+
+@dataclass(frozen=True)
+class Place:
+    """One dataset with an example for everything that an address may name."""
+
+    dataset: Dataset
+    assignment: Assignment
+    layer: Layer
+    hidden: Layer
+    fills: dict[str, str] = field(default_factory=dict)
+
+    def address(self, route: str) -> str:
+        """Filled by the first line that fits, longer ones first. Raises KeyError where none does."""
+        path = route.replace("^", "").replace("$", "").replace(r"\.", ".")
+        for part in sorted(self.fills, key=len, reverse=True):
+            path = path.replace(part, self.fills[part])
+        if left := re.search(r"<.+?>", path):
+            raise KeyError(
+                f"{route}: the scene has no example for {left[0]}; add one to tests/access/scene.py"
+            )
+        return "/" + path
+
+
+def make_place(slug: str) -> Place:
+    dataset = make_dataset(slug, frames=12, images=True)
+    batches.make_batches(dataset, size=4)
+    assignment = assignments.claim(make_worker(f"of-{slug}"), dataset)
+    layer, hidden = make_layer(dataset), make_layer(dataset, SECRET, Layer.Kind.GROUND_TRUTH, hidden=True)
+    for each in (layer, hidden):
+        save(each, dataset.frames.all()[0], [row()])
+    return Place(dataset, assignment, layer, hidden, fills_of(dataset, assignment, layer))
+
+
+def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str, str]:
+    """By the part of an address; to add an example, add a line."""
+    change = queue.create(Job.Kind.REPLACE_CALIBRATION, dataset, {})
+    Release.objects.create(
+        dataset=dataset,
+        number=1,
+        layer=make_layer(dataset, "released", Layer.Kind.GROUND_TRUTH),
+        manifest={
+            "counts": {"frames": 1, "people": 1, "annotations": 1, "cameras": 2},
+            "files": {},
+            "parameters": {},
+        },
+        manifest_digest="0" * 64,
+    )
+    picture = dataset.frames.all()[0].images.all()[0].light_digest
+    return {
+        "datasets/<slug:slug>": f"datasets/{dataset.slug}",
+        "layers/<str:name>": f"layers/{layer.name}",
+        "layers/<int:layer>": f"layers/{layer.pk}",
+        "calibration/<int:pk>": f"calibration/{change.pk}",
+        "calibrations/<int:pk>": f"calibrations/{change.pk}",
+        "jobs/<int:pk>": f"jobs/{exporting.start(layer).pk}",
+        "tokens/<int:pk>": "tokens/1",
+        "versions/<int:number>": "versions/1",
+        "releases/<int:number>/<str:name>": "releases/1/README.md",
+        "releases/<int:number>": "releases/1",
+        "files/<str:name>": "files/README.md",
+        "statistics/<slug:figure>.<slug:kind>": "statistics/speeds.svg",
+        "statistics/<slug:name>": "statistics/speeds",
+        "frames/<int:number>": "frames/0",
+        "from/<int:first>": "from/0",
+        "coverage/<str:digest>": "coverage/0",
+        "images/(?P<digest>[0-9a-f]{64})": f"images/{picture}",
+        "grids/(?P<digest>[0-9a-f]{64})": "grids/" + "0" * 64,
+        "join/<str:token>": f"join/{links.entry_token(dataset)}",
+        "work/<str:token>": f"work/{links.worker_token(assignment.worker, dataset)}",
+        "annotate/<str:token>": f"annotate/{links.assignment_token(assignment)}",
+    }
+
+
+def somebody(name: str, role: Role | None = None, dataset: Dataset | None = None) -> User:
+    user = User.objects.create_user(name)
+    if role:
+        granting.grant(user, role, dataset)
+    return user
