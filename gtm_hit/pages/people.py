@@ -6,6 +6,7 @@ from typing import Any
 
 from django import forms
 from django.contrib import messages
+from django.core.paginator import Paginator
 from django.http import HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import path
@@ -21,20 +22,19 @@ from gtm_hit.pages.common.access import StaffRequest, needs
 from gtm_hit.pages.datasets.listing import dataset_or_404
 
 CHANGES_SHOWN = 20
+ROWS_PER_PAGE = 100
 WORDS = {
-    Role.ANNOTATOR: gettext_lazy("annotator: does the batches that are handed out, and sees own work only"),
-    Role.REVIEWER: gettext_lazy("reviewer: sees the dataset, looks at workers' batches and decides"),
-    Role.MANAGER: gettext_lazy("manager: hands out, pays, knows the hidden truth; reviews, too"),
-    Role.MAINTAINER: gettext_lazy("maintainer: imports, calibrates, exports, releases"),
-    Role.ADMINISTRATOR: gettext_lazy("administrator: everything, and gives roles"),
+    Role.ANNOTATOR: gettext_lazy("does the batches handed out, and sees nothing else"),
+    Role.REVIEWER: gettext_lazy("sees the dataset, looks at workers' batches and decides about them"),
+    Role.MANAGER: gettext_lazy("hands out and pays, knows the hidden truth, exports; reviews, too"),
+    Role.MAINTAINER: gettext_lazy("imports, calibrates, exports, releases"),
+    Role.ADMINISTRATOR: gettext_lazy("everything, and gives roles"),
 }
 
 
 class RoleForm(forms.Form):
     user = forms.CharField(label=gettext_lazy("User name"), max_length=150)
-    role = forms.ChoiceField(
-        label=gettext_lazy("Role"), choices=[(role.value, text) for role, text in WORDS.items()]
-    )
+    role = forms.ChoiceField(label=gettext_lazy("Role"), choices=Role.choices)
 
 
 @require_http_methods(["GET", "HEAD", "POST"])
@@ -66,7 +66,8 @@ def answered(
         return redirect(request.path)
     found = {
         "form": form,
-        "holdings": granting.holdings(dataset),
+        "words": WORDS.items(),
+        "page": Paginator(granting.holdings(dataset), ROWS_PER_PAGE).get_page(request.GET.get("page")),
         "changes": granting.changes(dataset)[:CHANGES_SHOWN],
     }
     return render(request, template, {**context, **found})
@@ -81,7 +82,7 @@ def given(request: StaffRequest, form: RoleForm, dataset: Dataset | None) -> boo
     except granting.RoleError as error:
         form.add_error("user", str(error))
         return False
-    text = _("%(user)s is %(role)s now.") if new else _("%(user)s is %(role)s already.")
+    text = _("%(user)s has the role %(role)s now.") if new else _("%(user)s has the role %(role)s already.")
     messages.success(request, text % {"user": user.get_username(), "role": role.label})
     return True
 
@@ -112,7 +113,7 @@ def taken(request: StaffRequest, dataset: Dataset | None) -> None:
     except granting.RoleError as error:
         messages.error(request, str(error))
         return
-    text = _("%(user)s is no longer %(role)s.") if had else _("%(user)s was not %(role)s.")
+    text = _("%(user)s no longer has the role %(role)s.") if had else _("%(user)s had no role %(role)s here.")
     messages.success(request, text % {"user": user.get_username(), "role": role.label})
 
 

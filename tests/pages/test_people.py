@@ -39,10 +39,10 @@ def user(name: str) -> User:
 def test_a_role_for_a_dataset_is_given_and_taken_by_buttons(chief: Client, dataset: Dataset) -> None:
     User.objects.create_user("ada")
     page = text(chief.post(PAGE, {"user": "ada", "role": "reviewer"}, follow=True))
-    assert "ada is reviewer now." in page and "ada became reviewer" in page
+    assert "ada has the role reviewer now." in page and "<td>given</td>" in page
     assert may(user("ada"), Role.REVIEWER, dataset) and not may_everywhere(user("ada"), Role.REVIEWER)
     page = text(chief.post(f"{PAGE}take/", {"user": "ada", "role": "reviewer"}, follow=True))
-    assert "ada is no longer reviewer." in page
+    assert "ada no longer has the role reviewer." in page and "<td>removed</td>" in page
     assert not may(user("ada"), Role.REVIEWER)
 
 
@@ -74,15 +74,24 @@ def test_one_does_not_take_ones_own_administration(chief: Client, dataset: Datas
     page = text(chief.post("/people/take/", {"user": "chief", "role": "administrator"}, follow=True))
     assert "ask another administrator" in page
     assert may_everywhere(user("chief"), Role.ADMINISTRATOR)
-    assert "Take the role administrator from chief" not in page
+    assert "Remove the role administrator of chief" not in page
 
 
 def test_superusers_are_listed_and_cannot_be_taken_the_role(chief: Client) -> None:
     User.objects.create_superuser("root")
     page = text(chief.get("/people/"))
     assert "root" in page and "as a superuser" in page
-    assert "Take the role administrator from root" not in page
+    assert "Remove the role administrator of root" not in page
+
+
+def test_many_people_come_in_pages_those_who_may_much_first(chief: Client, dataset: Dataset) -> None:
+    for number in range(101):
+        granting.grant(User.objects.create_user(f"a-{number:03d}"), Role.ANNOTATOR, dataset)
+    granting.grant(User.objects.create_user("zoe"), Role.MANAGER, dataset)
+    first, second = (text(chief.get(f"{PAGE}?page={page}")).split("Give a role")[0] for page in (1, 2))
+    assert first.index("zoe") < first.index("a-000") and "a-099" not in first
+    assert "101 to 102 of 102" in second and "a-100" in second
 
 
 def test_an_empty_list_says_so(chief: Client, dataset: Dataset) -> None:
-    assert "Nobody has a role here yet." in text(chief.get(PAGE))
+    assert "Nobody has a role for this dataset alone yet." in text(chief.get(PAGE))

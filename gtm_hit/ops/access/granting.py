@@ -66,11 +66,15 @@ def user_named(name: str) -> User:
 
 
 def holdings(dataset: Dataset | None) -> list[Holding]:
-    """Who has which role: for one dataset, or for all datasets. Two queries."""
+    """Who has which role: for one dataset, or for all datasets. The few who may much come first."""
     if dataset is None:
-        return _everywhere()
+        return sorted(_everywhere(), key=_importance)
     rows = Membership.objects.filter(dataset=dataset).select_related("user", "dataset")
-    return [Holding(row.user, Role(row.role), row.dataset) for row in rows.order_by("user__username", "role")]
+    return sorted((Holding(row.user, Role(row.role), row.dataset) for row in rows), key=_importance)
+
+
+def _importance(holding: Holding) -> tuple[int, str]:
+    return -list(Role).index(holding.role), holding.user.get_username()
 
 
 def _everywhere() -> list[Holding]:
@@ -83,7 +87,7 @@ def _everywhere() -> list[Holding]:
         for user in superusers
         if (user.pk, Role.ADMINISTRATOR) not in named
     ]
-    return sorted(found, key=lambda each: (each.user.get_username(), each.role))
+    return found
 
 
 def changes(dataset: Dataset | None) -> QuerySet[RoleChange]:
