@@ -8,6 +8,7 @@ from gtm_hit.models.campaign import Campaign, CampaignWorker
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
 from gtm_hit.models.release import Release
+from gtm_hit.models.stitching import StitchConflict, StitchedFrame, Stitching, StitchingRun
 from gtm_hit.models.work import Assignment, Batch, Worker
 
 __all__ = [
@@ -30,5 +31,9 @@ __all__ = [
     "LayerFrame",
     "Release",
     "Save",
+    "StitchConflict",
+    "StitchedFrame",
+    "Stitching",
+    "StitchingRun",
     "Worker",
 ]

@@ -29,7 +29,7 @@ def same_people(replicas: Sequence[Batch], gate: float) -> list[People]:
     """Everybody who was annotated; tracks first, then single places that stray from their track's person."""
     people = [_points(group) for group in _grouped(replicas, gate)]
     for frame in sorted({frame for person in people for frame in person}):
-        _regroup(people, frame, gate)
+        _regroup(people, frame, len(replicas), gate)
     return [person for person in people if person]
 
 
@@ -92,15 +92,13 @@ def _points(group: Sequence[_Member]) -> People:
     return person
 
 
-def _regroup(people: list[People], frame: int, gate: float) -> None:
+def _regroup(people: list[People], frame: int, count: int, gate: float) -> None:
     """Give places that stray from their person to whom they stand with, or to somebody of their own.
 
     Also places of nobody else: a worker who swapped two people has their tracks with neither of them.
     """
     strayed = [point for person in people for point in _strayed(person, frame, gate)]
-    for replica in range(
-        1 + max((p.replica for person in people for p in person.get(frame, [])), default=-1)
-    ):
+    for replica in range(count):
         alone = [person[frame][0] for person in people if len(person.get(frame, [])) == 1]
         mine = [point for point in strayed + alone if point.replica == replica]
         if not mine:
