@@ -17,6 +17,7 @@ from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.layers import job as annotation_job
 from gtm_hit.ops.layers import unfinished
 from gtm_hit.ops.releases import releasing
+from gtm_hit.ops.stitching import running as stitching
 from gtm_hit.ops.work import assignments
 
 OPERATIONS: dict[str, queue.Operation] = {
@@ -26,6 +27,7 @@ OPERATIONS: dict[str, queue.Operation] = {
     Job.Kind.IMPORT_ANNOTATIONS: annotation_job.run,
     Job.Kind.MAKE_RELEASE: releasing.run,
     Job.Kind.REPLACE_CALIBRATION: calibration_job.run,
+    Job.Kind.STITCH: stitching.run,
 }
 
 

@@ -7,7 +7,7 @@ from django.views.decorators.gzip import gzip_page
 from drf_spectacular.views import SpectacularAPIView
 
 # Importing it tells drf-spectacular about the tokens.
-from gtm_hit.api import calibration, jobs, releases, roles, work
+from gtm_hit.api import calibration, jobs, releases, roles, stitching, work
 from gtm_hit.api.common import schema  # noqa: F401
 from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.common.docs import DocsView
@@ -87,6 +87,11 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("link/", work.Link.as_view()),
     path("progress/", work.Progress.as_view()),
     path("assignments/", work.Assignments.as_view()),
+    path("stitching/", stitching.Stitching.as_view()),
+    path("stitching/conflicts/", stitching.Conflicts.as_view()),
+    path("stitching/conflicts/<int:pk>/", stitching.OneConflict.as_view()),
+    path("stitching/conflicts/<int:pk>/decide/", stitching.DecideConflict.as_view()),
+    path("stitching/conflicts/<int:pk>/undo/", stitching.UndoConflict.as_view()),
     path("releases/", releases.Releases.as_view()),
     path("releases/<int:number>/", releases.OneRelease.as_view()),
     path("releases/<int:number>/download/", releases.DownloadRelease.as_view()),

@@ -9,6 +9,7 @@ from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
 from gtm_hit.models.release import Release
 from gtm_hit.models.role import Membership, Role, RoleChange
+from gtm_hit.models.stitching import StitchConflict, StitchedFrame, Stitching, StitchingRun
 from gtm_hit.models.work import Assignment, Batch, Worker
 
 __all__ = [
@@ -34,5 +35,9 @@ __all__ = [
     "Role",
     "RoleChange",
     "Save",
+    "StitchConflict",
+    "StitchedFrame",
+    "Stitching",
+    "StitchingRun",
     "Worker",
 ]

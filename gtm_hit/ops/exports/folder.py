@@ -19,8 +19,10 @@ from gtm_hit.ops.exports.files import ExportFiles
 from gtm_hit.ops.exports.formats.registry import DEFAULT_FORMATS, FORMATS
 from gtm_hit.ops.exports.formats.target import Target, Writer
 from gtm_hit.ops.exports.frames import Chunk, FrameReader
+from gtm_hit.ops.exports.sources import SourcesWriter
 from gtm_hit.ops.ground.coverage import table
 from gtm_hit.ops.jobs.progress import Progress
+from gtm_hit.ops.stitching.provenance import is_stitched, source_layers
 
 TABLE = "computing the rectangle table"
 FRAMES = "writing frames"
@@ -42,7 +44,9 @@ class ExportFolder:
         self.dataset: Dataset = layer.dataset
         self.report = report
         self.formats = list(formats)
-        self.writers = [*(FORMATS[name].writer for name in formats), *more]
+        self.stitched = is_stitched(layer)
+        sources = [SourcesWriter] if self.stitched else []
+        self.writers = [*(FORMATS[name].writer for name in formats), *sources, *more]
         self.files = ExportFiles(folder, archive)
         self.frames = self.annotations = self.not_validated = 0
         self.persons: set[int] = set()
@@ -101,7 +105,9 @@ class ExportFolder:
 
     def _parameters(self) -> dict[str, Any]:
         dataset = self.dataset
+        stitched = {"sources": [asdict(each) for each in source_layers(self.layer)]} if self.stitched else {}
         return {
+            **stitched,
             "dataset": dataset.slug,
             "dataset_name": dataset.name,
             "layer": self.layer.name,
@@ -134,8 +140,14 @@ class ExportFolder:
             "offset": self.dataset.annotation_offset,
         }
         parts = [FORMATS[name].readme.format(**values) for name in self.formats]
+        if self.stitched:
+            parts.append(STITCHED)
         return README.format(**values, formats="\n".join(parts))
 
+
+STITCHED = """\
+sources.csv   of which workers' annotations each person of each frame was made; their layers: manifest.json
+"""
 
 README = """\
 {dataset}: layer {layer}

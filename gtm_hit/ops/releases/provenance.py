@@ -16,6 +16,7 @@ from django.db.models import F
 from gtm_hit.models import Annotation, Assignment, Layer, LayerFrame, Save
 from gtm_hit.ops.exports.formats.target import Target
 from gtm_hit.ops.exports.frames import Chunk
+from gtm_hit.ops.stitching import provenance as stitching
 
 PROVENANCE = "provenance.csv"
 COLUMNS = ("frame", "person", "x", "y", "worker", "origin", "state", "seconds")
@@ -29,12 +30,16 @@ class ProvenanceWriter:
 
     def __init__(self, target: Target) -> None:
         self.layer = target.layer
+        self.stitched = stitching.is_stitched(target.layer)
         self.stream = target.open_files.enter_context(target.files.stream(PROVENANCE))
         self._write([COLUMNS])
 
     def add(self, chunk: Chunk) -> None:
         authors = _authors(self.layer, chunk)
-        by_place = _accepted(self.layer, chunk) if self.layer.kind == Layer.Kind.GROUND_TRUTH else {}
+        by_person = stitching.authors(self.layer, chunk.numbers) if self.stitched else {}
+        # A layer somebody made elsewhere of accepted work: told by where people stand.
+        placed = self.layer.kind == Layer.Kind.GROUND_TRUTH and not self.stitched
+        by_place = _accepted(self.layer, chunk) if placed else {}
         columns = zip(
             chunk.frames.tolist(),
             chunk.persons.tolist(),
@@ -47,7 +52,8 @@ class ProvenanceWriter:
         lines: list[tuple[object, ...]] = []
         for frame, person, position, (x, y), origin, state in columns:
             # Staff stitches the layer together, but the worker who put the person there made the annotation.
-            worker, seconds = by_place.get((frame, position)) or authors.get(frame, ("", 0.0))
+            made = by_person.get((frame, person)) or by_place.get((frame, position))
+            worker, seconds = made or authors.get(frame, ("", 0.0))
             lines.append((frame, person, x, y, worker, origin, state, round(seconds, 3)))
         self._write(lines)
 

@@ -23,6 +23,7 @@ from gtm_hit.ops.exports import exporting
 from gtm_hit.ops.exports.folder import FRAMES, TABLE, ExportFolder
 from gtm_hit.ops.exports.formats.registry import chosen
 from gtm_hit.ops.exports.formats.target import RECTANGLES
+from gtm_hit.ops.exports.sources import SOURCES
 from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.jobs.progress import Progress, percents
 from gtm_hit.ops.quality.layer_rows import state_of
@@ -44,7 +45,14 @@ SHARES = {
     RECTANGLES: (80, 90),
     MEASURING: (90, 100),
 }
-PARTS = ("README.md", "LICENSE", CHANGES, PROVENANCE, "manifest.json")  # worth having without the rest
+PARTS = (
+    "README.md",
+    "LICENSE",
+    CHANGES,
+    PROVENANCE,
+    SOURCES,
+    "manifest.json",
+)  # worth having without the rest
 MOST_LICENCE = 100_000  # characters
 
 

@@ -1,0 +1,1 @@
+"""Accepted batches into one ground-truth layer, again and again, changing only what changed."""
