@@ -100,11 +100,15 @@ def batch_counts(dataset: Dataset) -> BatchCounts:
 def batches(dataset: Dataset, campaign: Campaign | None = None) -> QuerySet[Batch]:
     """Batches with `frame_count`, `first_number` and `last_number`; pages hand out `with_assignments`."""
     frames = Frame.objects.filter(batches=OuterRef("pk"))
-    return dataset.batches.filter(campaign=campaign).annotate(
-        frame_count=_count(Batch.frames.through.objects.filter(batch=OuterRef("pk")), "batch", "pk"),
-        first_number=Subquery(frames.order_by("number").values("number")[:1]),
-        last_number=Subquery(frames.order_by("-number").values("number")[:1]),
-    ).order_by("copy", "number")
+    return (
+        dataset.batches.filter(campaign=campaign)
+        .annotate(
+            frame_count=_count(Batch.frames.through.objects.filter(batch=OuterRef("pk")), "batch", "pk"),
+            first_number=Subquery(frames.order_by("number").values("number")[:1]),
+            last_number=Subquery(frames.order_by("-number").values("number")[:1]),
+        )
+        .order_by("copy", "number")
+    )
 
 
 @dataclass(frozen=True)
