@@ -10,6 +10,8 @@ from django.views.decorators.http import require_safe
 def home(request: HttpRequest) -> HttpResponse:
     if request.user.is_staff:
         return redirect("datasets")
+    if request.user.is_authenticated:
+        return redirect("my-work")
     return render(request, "home.html")
 
 

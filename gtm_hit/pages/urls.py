@@ -8,7 +8,7 @@ from gtm_hit.pages.datasets import listing as datasets
 from gtm_hit.pages.layers import importing as annotation_imports
 from gtm_hit.pages.layers import listing as layers
 from gtm_hit.pages.quality import comparing, statistics, text_files
-from gtm_hit.pages.work import batches, workplace
+from gtm_hit.pages.work import batches, invitation, my_work, workplace
 
 urlpatterns: list[URLPattern | URLResolver] = [
     *home.urlpatterns,
@@ -25,4 +25,6 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *calibration.urlpatterns,
     *api_tokens.urlpatterns,
     *workplace.urlpatterns,
+    *my_work.urlpatterns,
+    *invitation.urlpatterns,
 ]

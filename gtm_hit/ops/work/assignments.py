@@ -101,6 +101,12 @@ def held(worker: Worker, pool: Pool) -> list[Assignment]:
     return returned + list(mine.filter(pk__in=running()).order_by("expires_at"))
 
 
+def room_for_another(worker: Worker, place: Place) -> bool:
+    """Whether he may hold one more beside those he holds."""
+    pool = pool_of(place)
+    return len(held(worker, pool)) < pool.batches_at_once
+
+
 def claim(worker: Worker, place: Place, address: str = "", another: bool = False) -> Assignment:
     """The worker's running lease, else his expired batch if it is still free, else the next free batch.
 
