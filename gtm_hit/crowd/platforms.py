@@ -5,7 +5,7 @@ from __future__ import annotations
 from gtm_hit.crowd.external_question import ExternalQuestion
 from gtm_hit.crowd.own_team import OwnTeam
 from gtm_hit.crowd.platform import Platform
-from gtm_hit.crowd.prolific import Prolific
+from gtm_hit.crowd.prolific_study import Prolific
 from gtm_hit.crowd.survey_link import SurveyLink
 from gtm_hit.models import Campaign
 from gtm_hit.ops.campaigns import platform_settings

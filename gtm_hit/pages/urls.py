@@ -3,6 +3,10 @@ from __future__ import annotations
 from django.urls import URLPattern, URLResolver
 
 from gtm_hit.pages import api_tokens, calibration, home, jobs, releases
+from gtm_hit.pages.campaigns import links as campaign_links
+from gtm_hit.pages.campaigns import listing as campaigns
+from gtm_hit.pages.campaigns import rules as campaign_rules
+from gtm_hit.pages.campaigns import workers as campaign_workers
 from gtm_hit.pages.datasets import importing as dataset_imports
 from gtm_hit.pages.datasets import listing as datasets
 from gtm_hit.pages.layers import importing as annotation_imports
@@ -14,6 +18,10 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *home.urlpatterns,
     *datasets.urlpatterns,
     *batches.urlpatterns,
+    *campaign_rules.urlpatterns,  # before a campaign's name: `new` is none
+    *campaigns.urlpatterns,
+    *campaign_links.urlpatterns,
+    *campaign_workers.urlpatterns,
     *layers.urlpatterns,
     *annotation_imports.urlpatterns,
     *releases.urlpatterns,

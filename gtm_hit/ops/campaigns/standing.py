@@ -20,16 +20,20 @@ def worker_named(campaign: Campaign, name: str) -> Worker | None:
     return found or Worker.objects.filter(platform=campaign.platform, external_id=name).first()
 
 
-def invite(campaign: Campaign, external_id: str, user: User | None = None) -> CampaignWorker:
+def invite(campaign: Campaign, name: str, user: User | None = None) -> CampaignWorker:
     """Whoever has this id on the campaign's platform may come in, known here already or not."""
+    return put(campaign, known_or_new(campaign, name), Standing.INVITED, "", user)
+
+
+def known_or_new(campaign: Campaign, external_id: str) -> Worker:
+    """Somebody of the campaign's platform by pseudonym or id. Raises CampaignError."""
     if campaign.platform == Campaign.Platform.OWN_TEAM and worker_named(campaign, external_id) is None:
         text = _("Nobody has an account “%(name)s” here; make an invitation link instead.")
         raise CampaignError(text % {"name": external_id}, "worker")
     try:
-        worker = worker_named(campaign, external_id) or workers.enter(campaign.platform, external_id)
+        return worker_named(campaign, external_id) or workers.enter(campaign.platform, external_id)
     except workers.InvalidWorkerId as error:
         raise CampaignError(str(error), "worker") from error
-    return put(campaign, worker, Standing.INVITED, "", user)
 
 
 def block(campaign: Campaign, worker: Worker, reason: str, user: User | None = None) -> CampaignWorker:
