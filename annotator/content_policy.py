@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from django.conf import settings
 from django.http import HttpRequest
 from django.http.response import HttpResponseBase
 
 HEADER = "Content-Security-Policy"
-# blob: and data: are pictures the pages make themselves.
-POLICY = "; ".join(
-    [
-        "default-src 'self'",
-        "img-src 'self' blob: data:",
-        "object-src 'none'",
-        "base-uri 'none'",
-        "form-action 'self'",
-        "frame-ancestors 'none'",
-    ]
-)
+
+
+def policy(ancestors: Sequence[str] = ("'none'",), forms: Sequence[str] = ()) -> str:
+    """`ancestors` may show the page in a frame; `forms` get what is sent off from it, beside us."""
+    return "; ".join(
+        [
+            "default-src 'self'",
+            # Pictures the pages make themselves.
+            "img-src 'self' blob: data:",
+            "object-src 'none'",
+            "base-uri 'none'",
+            " ".join(["form-action 'self'", *forms]),
+            " ".join(["frame-ancestors", *ancestors]),
+        ]
+    )
+
+
+POLICY = policy()
 # A drawing brings its style along.
 FIGURE = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'"
 

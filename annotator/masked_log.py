@@ -6,7 +6,10 @@ import logging
 import re
 
 # As in deploy/nginx.conf.
-KEY = re.compile(r"(/(?:join|work|annotate)/|%2F(?:join|work|annotate)%2F)[^/?&\s'\"%]+", re.IGNORECASE)
+KEY = re.compile(
+    r"(/(?:join|work|annotate|invitation)/|%2F(?:join|work|annotate|invitation)%2F)[^/?&\s'\"%]+",
+    re.IGNORECASE,
+)
 
 
 class MaskingFormatter(logging.Formatter):

@@ -15,6 +15,8 @@ DEBUG = environment.boolean("DEBUG", False)
 SECRET_KEY = environment.text("SECRET_KEY", "only-for-debugging-on-this-machine" if DEBUG else None)
 if len(SECRET_KEY) < 32:
     raise ImproperlyConfigured("SECRET_KEY must have at least 32 characters")
+# Keys of before: what they signed still counts, what is signed now has the new one.
+SECRET_KEY_FALLBACKS = environment.words("SECRET_KEY_FALLBACKS", "")
 ALLOWED_HOSTS = environment.words("ALLOWED_HOSTS", "localhost 127.0.0.1 [::1]")
 CSRF_TRUSTED_ORIGINS = environment.words("CSRF_TRUSTED_ORIGINS", "")
 
@@ -148,6 +150,7 @@ SPECTACULAR_SETTINGS = {
         "AnnotationState": "gtm_hit.models.annotation.Annotation.State",
         "AssignmentState": "gtm_hit.models.work.Assignment.State",
         "JobState": "gtm_hit.models.job.Job.State",
+        "CampaignState": "gtm_hit.models.campaign.Campaign.State",
     },
 }
 
@@ -170,6 +173,11 @@ UNSAVED_PER_ADDRESS = environment.integer("UNSAVED_PER_ADDRESS", 30, minimum=1, 
 UNSAVED_PER_LINK = environment.integer("UNSAVED_PER_LINK", 300, minimum=1, maximum=1_000_000)
 # Whose X-Forwarded-For is believed; from anybody else it is a claim.
 TRUSTED_PROXIES = environment.networks("TRUSTED_PROXIES", "")
+# Days until an address that lets somebody in, or leads to his own work, is worth nothing; 0: never.
+ENTRY_LINK_DAYS = environment.integer("ENTRY_LINK_DAYS", 180, minimum=0, maximum=36_500)
+WORKER_LINK_DAYS = environment.integer("WORKER_LINK_DAYS", 90, minimum=0, maximum=36_500)
+# Panels whose pages may show ours in a frame and take its form; campaigns choose among them.
+EMBEDDING_ORIGINS = environment.words("EMBEDDING_ORIGINS", "")
 TUTORIAL_DATASET = environment.text("TUTORIAL_DATASET", "demo")
 
 LOG_LEVEL = environment.one_of("LOG_LEVEL", "INFO", ("DEBUG", "INFO", "WARNING", "ERROR"))

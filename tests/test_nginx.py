@@ -153,7 +153,7 @@ def test_an_archive_larger_than_allowed_is_refused(site: Site) -> None:
     assert " 413 " in first_line(site, "/gtm/api/v1/uploads/", 150)
 
 
-@pytest.mark.parametrize("word", ["join", "work", "annotate"])
+@pytest.mark.parametrize("word", ["join", "work", "annotate", "invitation"])
 def test_the_access_log_holds_no_key(site: Site, word: str) -> None:
     site.ask(f"/gtm/{word}/abc:def-SECRET/?PROLIFIC_PID=someone", Referer="http://x/annotate/SECRET/")
     assert f"/gtm/{word}/*/" in site.log()

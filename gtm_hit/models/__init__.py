@@ -5,6 +5,7 @@ from gtm_hit.models.annotation import Annotation, AppendOnlyError, Layer, LayerF
 from gtm_hit.models.api_token import ApiToken
 from gtm_hit.models.calibration import Calibration
 from gtm_hit.models.campaign import Campaign, CampaignWorker
+from gtm_hit.models.campaign_link import CampaignLink
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
 from gtm_hit.models.release import Release
@@ -22,6 +23,7 @@ __all__ = [
     "Calibration",
     "Camera",
     "Campaign",
+    "CampaignLink",
     "CampaignWorker",
     "Dataset",
     "EntryLink",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import secrets
 
+from django.conf import settings
 from django.db import models
 from django.db.models import Q
 from django.utils import timezone
@@ -33,6 +34,20 @@ class Worker(models.Model):
     platform = models.SlugField(max_length=40, default="link")
     external_id = models.CharField(max_length=255)
     pseudonym = models.CharField(max_length=20, unique=True, default=pseudonym, editable=False)
+    user = models.OneToOneField(
+        settings.AUTH_USER_MODEL,
+        null=True,
+        blank=True,
+        on_delete=models.SET_NULL,
+        related_name="worker",
+        help_text="the account of who works with a login",
+    )
+    nonce = models.CharField(
+        max_length=32,
+        blank=True,
+        editable=False,
+        help_text="part of the worker's own links; a new one revokes them all",
+    )
     tutorial_steps = models.JSONField(default=list, blank=True, help_text="steps of the tutorial done right")
     tutorial_done_at = models.DateTimeField(null=True, blank=True)
     browser = models.CharField(
@@ -120,15 +135,16 @@ class Assignment(models.Model):
 
     class Meta:
         ordering = ["-leased_at"]
-        indexes = [models.Index(fields=["address", "leased_at"])]
+        # How many batches a worker may hold at once is the campaign's rule; `claim` locks the worker for it.
+        indexes = [
+            models.Index(fields=["address", "leased_at"]),
+            models.Index(fields=["worker", "submission"], name="assignment_submission"),
+        ]
         constraints = [
             models.UniqueConstraint(
                 fields=["batch"],
                 condition=Q(state__in=["leased", "submitted", "accepted", "returned"]),
                 name="batch_held_by_one",
-            ),
-            models.UniqueConstraint(
-                fields=["worker"], condition=Q(state="leased"), name="worker_leases_one_batch"
             ),
             models.CheckConstraint(
                 condition=Q(state__in=["leased", "expired"]) | Q(submitted_at__isnull=False),

@@ -15,6 +15,7 @@ from gtm_hit.models import (
     Assignment,
     Batch,
     Camera,
+    Campaign,
     Dataset,
     Frame,
     Image,
@@ -75,7 +76,10 @@ class BatchCounts:
 
 
 def batch_counts(dataset: Dataset) -> BatchCounts:
-    held = Assignment.objects.filter(batch__dataset=dataset, state__in=Assignment.HOLDING)
+    """Of the batches made for the dataset itself; campaigns count their own."""
+    held = Assignment.objects.filter(
+        batch__dataset=dataset, batch__campaign=None, state__in=Assignment.HOLDING
+    )
     states = dict(
         # A lease that ran out holds nothing, though its row says so until the clock comes by.
         held.exclude(state=Assignment.State.LEASED, expires_at__lte=timezone.now())
@@ -83,25 +87,30 @@ def batch_counts(dataset: Dataset) -> BatchCounts:
         .annotate(count=Count("pk"))
         .order_by()
     )
-    batches = dataset.batches.count()
+    own = dataset.batches.filter(campaign=None)
+    batches = own.count()
     return BatchCounts(
         batches=batches,
         free=batches - sum(states.values()),
         leased=states.get("leased", 0) + states.get("returned", 0),
         submitted=states.get("submitted", 0),
         accepted=states.get("accepted", 0),
-        frames_without=dataset.frames.filter(batches__isnull=True).count(),
+        frames_without=dataset.frames.exclude(batches__in=own).count(),
     )
 
 
-def batches(dataset: Dataset) -> QuerySet[Batch]:
+def batches(dataset: Dataset, campaign: Campaign | None = None) -> QuerySet[Batch]:
     """Batches with `frame_count`, `first_number` and `last_number`; pages hand out `with_assignments`."""
     frames = Frame.objects.filter(batches=OuterRef("pk"))
-    return dataset.batches.annotate(
-        frame_count=_count(Batch.frames.through.objects.filter(batch=OuterRef("pk")), "batch", "pk"),
-        first_number=Subquery(frames.order_by("number").values("number")[:1]),
-        last_number=Subquery(frames.order_by("-number").values("number")[:1]),
-    ).order_by("copy", "number")
+    return (
+        dataset.batches.filter(campaign=campaign)
+        .annotate(
+            frame_count=_count(Batch.frames.through.objects.filter(batch=OuterRef("pk")), "batch", "pk"),
+            first_number=Subquery(frames.order_by("number").values("number")[:1]),
+            last_number=Subquery(frames.order_by("-number").values("number")[:1]),
+        )
+        .order_by("copy", "number")
+    )
 
 
 @dataclass(frozen=True)

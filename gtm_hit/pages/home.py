@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
-from django.urls import NoReverseMatch, path, reverse
+from django.urls import path
 from django.views.decorators.http import require_safe
 
 from gtm_hit.ops.access.roles import SEES, Role, may
@@ -13,16 +13,9 @@ def home(request: HttpRequest) -> HttpResponse:
     """Leads people to where their work is."""
     if may(request.user, SEES):
         return redirect("datasets")
-    if may(request.user, Role.ANNOTATOR) and (address := my_work()):
-        return redirect(address)
+    if may(request.user, Role.ANNOTATOR):
+        return redirect("my-work")
     return render(request, "home.html", {"waits": request.user.is_authenticated})
-
-
-def my_work() -> str | None:
-    try:
-        return reverse("my-work")
-    except NoReverseMatch:
-        return None
 
 
 urlpatterns = [path("", home, name="home")]

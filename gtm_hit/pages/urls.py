@@ -3,17 +3,22 @@ from __future__ import annotations
 from django.urls import URLPattern, URLResolver
 
 from gtm_hit.pages import api_tokens, calibration, home, jobs, people, releases
+from gtm_hit.pages.campaigns import links as campaign_links, listing as campaigns, rules as campaign_rules, workers as campaign_workers
 from gtm_hit.pages.datasets import importing as dataset_imports
 from gtm_hit.pages.datasets import listing as datasets
 from gtm_hit.pages.layers import importing as annotation_imports
 from gtm_hit.pages.layers import listing as layers
 from gtm_hit.pages.quality import comparing, statistics, text_files
-from gtm_hit.pages.work import batches, workplace
+from gtm_hit.pages.work import batches, invitation, my_work, workplace
 
 urlpatterns: list[URLPattern | URLResolver] = [
     *home.urlpatterns,
     *datasets.urlpatterns,
     *batches.urlpatterns,
+    *campaign_rules.urlpatterns,  # before a campaign's name: `new` is none
+    *campaigns.urlpatterns,
+    *campaign_links.urlpatterns,
+    *campaign_workers.urlpatterns,
     *layers.urlpatterns,
     *annotation_imports.urlpatterns,
     *releases.urlpatterns,
@@ -26,4 +31,6 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *api_tokens.urlpatterns,
     *people.urlpatterns,
     *workplace.urlpatterns,
+    *my_work.urlpatterns,
+    *invitation.urlpatterns,
 ]

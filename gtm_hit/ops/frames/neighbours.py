@@ -30,8 +30,8 @@ def neighbours(batch: Batch) -> Neighbours:
     """At most five queries; one when nothing beside the batch is accepted."""
     accepted = accepted_beside(batch)
     return Neighbours(
-        before=nearest_frames(accepted.get(batch.number - 1), "-number"),
-        after=nearest_frames(accepted.get(batch.number + 1), "number"),
+        before=nearest_frames(batch, accepted.get(batch.number - 1), "-number"),
+        after=nearest_frames(batch, accepted.get(batch.number + 1), "number"),
     )
 
 
@@ -39,6 +39,7 @@ def accepted_beside(batch: Batch) -> dict[int, Assignment]:
     """By batch number; where several copies were accepted, the one of this batch's own copy."""
     found = Assignment.objects.select_related("batch").filter(
         batch__dataset=batch.dataset_id,
+        batch__campaign=batch.campaign_id,
         batch__number__in=[batch.number - 1, batch.number + 1],
         state=Assignment.State.ACCEPTED,
     )
@@ -46,10 +47,12 @@ def accepted_beside(batch: Batch) -> dict[int, Assignment]:
     return {one.batch.number: one for one in own_copy_last}
 
 
-def nearest_frames(assignment: Assignment | None, order: str) -> list[NeighbourFrame]:
+def nearest_frames(batch: Batch, assignment: Assignment | None, order: str) -> list[NeighbourFrame]:
+    """Outside the batch: what neighbours overlap in, every one of them annotates for himself."""
     if assignment is None:
         return []
-    frames = list(Frame.objects.filter(batches=assignment.batch_id).order_by(order)[:REACH])
+    beside = Frame.objects.filter(batches=assignment.batch_id).exclude(batches=batch.pk)
+    frames = list(beside.order_by(order)[:REACH])
     annotations = Annotation.objects.filter(layer=assignment.layer_id)
     people = rows_by_frame(annotations, [frame.pk for frame in frames])
     return [NeighbourFrame(frame.number, people[frame.pk]) for frame in frames]

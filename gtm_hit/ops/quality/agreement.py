@@ -11,7 +11,7 @@ from django.db.models import Count, Q, QuerySet
 from gtm_hit.metrics import agreement
 from gtm_hit.metrics.agreement import Agreement, PairAgreement, WorkerBias
 from gtm_hit.metrics.matching import RADIUS
-from gtm_hit.models import Assignment, Dataset
+from gtm_hit.models import Assignment, Campaign, Dataset
 from gtm_hit.ops.quality.layer_rows import read_layers
 from gtm_hit.ops.quality.statistics.numbers import plain
 
@@ -32,10 +32,11 @@ class BatchAgreement:
         return self.agreement.workers
 
 
-def shared_batches(dataset: Dataset) -> QuerySet[Any]:
-    """Numbers of the batches that two or more workers finished, ascending."""
+def shared_batches(dataset: Dataset, campaign: Campaign | None = None) -> QuerySet[Any]:
+    """Numbers of the batches that two or more workers finished, ascending; each campaign counts its own."""
     return (
-        dataset.batches.values("number")
+        dataset.batches.filter(campaign=campaign)
+        .values("number")
         .annotate(opinions=Count("assignments__worker", Q(assignments__state__in=FINISHED), distinct=True))
         .filter(opinions__gte=2)
         .order_by("number")
@@ -44,11 +45,12 @@ def shared_batches(dataset: Dataset) -> QuerySet[Any]:
 
 
 def batch_agreements(
-    dataset: Dataset, numbers: Iterable[int], radius: float = RADIUS
+    dataset: Dataset, numbers: Iterable[int], radius: float = RADIUS, campaign: Campaign | None = None
 ) -> list[BatchAgreement]:
     """Three queries, however many batches. A worker who did two copies counts with the later one."""
     assignments = (
-        Assignment.objects.filter(batch__dataset=dataset, batch__number__in=list(numbers), state__in=FINISHED)
+        Assignment.objects.filter(batch__dataset=dataset, batch__campaign=campaign)
+        .filter(batch__number__in=list(numbers), state__in=FINISHED)
         .select_related("batch", "worker", "layer")
         .order_by("batch__number", "submitted_at")
     )

@@ -15,10 +15,12 @@ from django.db.models import Count, Exists, F, OuterRef, Q, QuerySet, Sum
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
-from gtm_hit.models import Assignment, Batch, Dataset, Frame, Layer, LayerFrame, Worker
+from gtm_hit.models import Assignment, Batch, Campaign, Frame, Layer, LayerFrame, Worker
 from gtm_hit.models.work import completion_code
+from gtm_hit.ops.campaigns import entry_rules
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.work import unsaved_leases
+from gtm_hit.ops.work.pools import Place, Pool, pool_of
 
 State = Assignment.State
 
@@ -58,13 +60,18 @@ class Unfinished(AssignmentError):
         self.frames = frames
 
 
-def lease_end() -> datetime:
-    return timezone.now() + timedelta(minutes=settings.LEASE_MINUTES)
+def lease_end(campaign: Campaign | None) -> datetime:
+    return timezone.now() + timedelta(minutes=lease_minutes(campaign))
 
 
-def first_lease_end() -> datetime:
+def first_lease_end(campaign: Campaign | None) -> datetime:
     """Until something is saved; then `extend` gives the whole time."""
-    return timezone.now() + timedelta(minutes=min(settings.FIRST_SAVE_MINUTES, settings.LEASE_MINUTES))
+    minutes = min(settings.FIRST_SAVE_MINUTES, lease_minutes(campaign))
+    return timezone.now() + timedelta(minutes=minutes)
+
+
+def lease_minutes(campaign: Campaign | None) -> int:
+    return campaign.lease_minutes if campaign else settings.LEASE_MINUTES
 
 
 def expire_leases(now: datetime | None = None) -> int:
@@ -82,46 +89,71 @@ def running() -> QuerySet[Assignment]:
     return Assignment.objects.filter(state=State.LEASED, expires_at__gt=timezone.now())
 
 
-def current(worker: Worker, dataset: Dataset) -> Assignment | None:
-    """What the worker has to do in the dataset now: returned work first, then the running lease."""
-    mine = Assignment.objects.filter(worker=worker, batch__dataset=dataset).select_related("batch")
-    returned = mine.filter(state=State.RETURNED).first()
-    return returned or running().filter(pk__in=mine).select_related("batch").first()
+def current(worker: Worker, place: Place) -> Assignment | None:
+    """What the worker has to do here now: returned work first, then the running lease that ends first."""
+    return next(iter(held(worker, pool_of(place))), None)
 
 
-def claim(worker: Worker, dataset: Dataset, address: str = "") -> Assignment:
+def held(worker: Worker, pool: Pool) -> list[Assignment]:
+    """All the worker has to do here now."""
+    mine = pool.mine(worker).select_related("batch__campaign")
+    returned = list(mine.filter(state=State.RETURNED))
+    return returned + list(mine.filter(pk__in=running()).order_by("expires_at"))
+
+
+def room_for_another(worker: Worker, place: Place) -> bool:
+    """Whether he may hold one more beside those he holds."""
+    pool = pool_of(place)
+    return len(held(worker, pool)) < pool.batches_at_once
+
+
+def claim(worker: Worker, place: Place, address: str = "", another: bool = False) -> Assignment:
     """The worker's running lease, else his expired batch if it is still free, else the next free batch.
 
-    `address` is where the request came from. Raises NoFreeBatch, BusyElsewhere or TooManyUnsaved.
+    `address` is where the request came from; `another` asks for one more beside those he holds. Raises
+    NoFreeBatch, BusyElsewhere, TooManyUnsaved, or NotAdmitted when a campaign's rules give him none.
     """
+    pool = pool_of(place)
     for _attempt in range(MAX_TRIES):
         # In a transaction of its own: one that ends leases and then waits for a batch blocks whoever
         # is about to take that batch.
         expire_leases()
         try:
             with transaction.atomic():
-                return claim_once(worker, dataset, address)
+                return claim_once(worker, pool, address, another)
         except IntegrityError:
             continue
-    raise NoFreeBatch(f"{dataset}: no batch for {worker} after {MAX_TRIES} tries")
+    raise NoFreeBatch(f"{pool.dataset}: no batch for {worker} after {MAX_TRIES} tries")
 
 
-def claim_once(worker: Worker, dataset: Dataset, address: str) -> Assignment:
-    # Two tabs of one worker queue here, so that neither holds a second batch even for a moment.
+def claim_once(worker: Worker, pool: Pool, address: str, another: bool) -> Assignment:
+    # Two tabs of one worker queue here, so that neither holds more than may be held even for a moment.
     Worker.objects.select_for_update(no_key=True).get(pk=worker.pk)
-    if held := current(worker, dataset):
-        return held
-    elsewhere = running().filter(worker=worker).exclude(batch__dataset=dataset)
-    if other := elsewhere.select_related("batch__dataset").first():
-        raise BusyElsewhere(other)
-    if own := regained(worker, dataset, address):
+    mine = held(worker, pool)
+    if mine and not (another and len(mine) < pool.batches_at_once):
+        return mine[0]
+    require_admitted(worker, pool)
+    if own := regained(worker, pool, address):
         return own
-    unsaved_leases.require_room(worker, dataset, address)
+    unsaved_leases.require_room(worker, pool.dataset, address)
     # Skipping what others are about to take (SQLite has one writer at a time anyway).
-    batch = free_batches(worker, dataset).select_for_update(no_key=True, skip_locked=True).first()
+    batch = free_batches(worker, pool).select_for_update(no_key=True, skip_locked=True).first()
     if batch is None:
-        raise NoFreeBatch(f"{dataset}: no batch for {worker}")
-    return lease(batch, worker, address)
+        raise NoFreeBatch(f"{pool.dataset}: no batch for {worker}")
+    batch.campaign = pool.campaign
+    return lease(batch, worker, address, pool.submission)
+
+
+def require_admitted(worker: Worker, pool: Pool) -> None:
+    """Raises NotAdmitted, BusyElsewhere, or NoFreeBatch when the submission's one batch is done."""
+    if pool.campaign is None:
+        elsewhere = running().filter(worker=worker, batch__campaign=None).exclude(batch__dataset=pool.dataset)
+        if other := elsewhere.select_related("batch__dataset").first():
+            raise BusyElsewhere(other)
+    elif refusal := entry_rules.refusal(pool.campaign, worker):
+        raise entry_rules.NotAdmitted(refusal)
+    if pool.submission and pool.mine(worker).filter(submitted_at__isnull=False).exists():
+        raise NoFreeBatch(f"{pool.dataset}: submission {pool.submission} had its batch")
 
 
 def holding(batch: OuterRef) -> Exists:
@@ -130,60 +162,76 @@ def holding(batch: OuterRef) -> Exists:
     return Exists(held.exclude(state=State.LEASED, expires_at__lte=timezone.now()))
 
 
-def free_batches(worker: Worker, dataset: Dataset) -> QuerySet[Batch]:
+def free_batches(worker: Worker, place: Place) -> QuerySet[Batch]:
     """Batches nobody holds, of numbers this worker has never had, first copies first."""
-    had = Assignment.objects.filter(worker=worker, batch__dataset=dataset).values("batch__number")
-    free = Batch.objects.filter(~holding(OuterRef("pk")), dataset=dataset).exclude(number__in=had)
+    pool = pool_of(place)
+    had = pool.all_of(worker).values("batch__number")
+    free = pool.batches().filter(~holding(OuterRef("pk"))).exclude(number__in=had)
     return free.order_by("copy", "number")
 
 
-def own_expired(worker: Worker, dataset: Dataset) -> QuerySet[Assignment]:
+def own_expired(worker: Worker, place: Place) -> QuerySet[Assignment]:
     """The worker's assignments that ran out and whose batches are still free, newest first."""
-    mine = Assignment.objects.filter(worker=worker, batch__dataset=dataset)
+    mine = pool_of(place).mine(worker)
     over = mine.filter(state__in=[State.EXPIRED, State.LEASED], expires_at__lte=timezone.now())
     return over.filter(~holding(OuterRef("batch"))).select_related("batch")
 
 
-def work_left(worker: Worker, dataset: Dataset) -> bool:
+def work_left(worker: Worker, place: Place) -> bool:
     """Whether `claim` would find something; nothing is taken."""
-    return own_expired(worker, dataset).exists() or free_batches(worker, dataset).exists()
+    pool = pool_of(place)
+    if pool.campaign and entry_rules.refusal(pool.campaign, worker):
+        return False
+    return own_expired(worker, pool).exists() or free_batches(worker, pool).exists()
 
 
-def finished(worker: Worker, dataset: Dataset) -> QuerySet[Assignment]:
+def finished(worker: Worker, place: Place) -> QuerySet[Assignment]:
     """What the worker submitted, newest first."""
-    mine = Assignment.objects.filter(worker=worker, batch__dataset=dataset, submitted_at__isnull=False)
-    return mine.select_related("batch__dataset", "layer").order_by("-submitted_at")
+    mine = pool_of(place).mine(worker).filter(submitted_at__isnull=False)
+    return mine.select_related("batch__dataset", "batch__campaign", "layer").order_by("-submitted_at")
 
 
-def regained(worker: Worker, dataset: Dataset, address: str) -> Assignment | None:
+def regained(worker: Worker, pool: Pool, address: str) -> Assignment | None:
     """The worker's newest expired assignment, leased again with all its work."""
-    own = own_expired(worker, dataset).first()
+    own = own_expired(worker, pool).first()
     if own is None:
         return None
     # The same lock as for a free batch: whoever is about to take it is let through first.
     Batch.objects.select_for_update(no_key=True).get(pk=own.batch_id)
-    changes: dict[str, Any] = {"state": State.LEASED, "leased_at": timezone.now(), "expires_at": lease_end()}
+    changes: dict[str, Any] = {
+        "state": State.LEASED,
+        "leased_at": timezone.now(),
+        "expires_at": lease_end(pool.campaign),
+    }
     if not LayerFrame.objects.filter(layer=own.layer_id, revision__gt=0).exists():
-        unsaved_leases.require_room(worker, dataset, address)
-        changes |= {"expires_at": first_lease_end(), "takes": F("takes") + 1}
+        unsaved_leases.require_room(worker, pool.dataset, address)
+        changes |= {"expires_at": first_lease_end(pool.campaign), "takes": F("takes") + 1}
         changes["address"] = unsaved_leases.kept(address)
-    if not own_expired(worker, dataset).filter(pk=own.pk).update(**changes):
+    if not own_expired(worker, pool).filter(pk=own.pk).update(**changes):
         return None
     own.refresh_from_db()
     return own
 
 
-def lease(batch: Batch, worker: Worker, address: str) -> Assignment:
-    name = f"batch-{batch.number:04d}-{worker.pseudonym}"
+def lease(batch: Batch, worker: Worker, address: str, submission: str = "") -> Assignment:
+    place = f"{batch.campaign.name}-" if batch.campaign else ""
+    name = f"{place}batch-{batch.number:04d}-{worker.pseudonym}"
     layer = Layer.objects.create(dataset_id=batch.dataset_id, name=name, kind=Layer.Kind.ASSIGNMENT)
-    end, origin = first_lease_end(), unsaved_leases.kept(address)
-    return Assignment.objects.create(batch=batch, worker=worker, layer=layer, expires_at=end, address=origin)
+    return Assignment.objects.create(
+        batch=batch,
+        worker=worker,
+        layer=layer,
+        expires_at=first_lease_end(batch.campaign),
+        address=unsaved_leases.kept(address),
+        submission=submission,
+    )
 
 
 def locked_for_layer(layer: Layer) -> Assignment | None:
     if layer.kind != Layer.Kind.ASSIGNMENT:
         return None
-    return Assignment.objects.select_for_update(no_key=True).filter(layer=layer).first()
+    rows = Assignment.objects.select_related("batch__campaign")
+    return rows.select_for_update(no_key=True, of=("self",)).filter(layer=layer).first()
 
 
 def require_editable(layer: Layer, assignment: Assignment | None, worker: Worker | None) -> None:
@@ -218,7 +266,8 @@ def explained(reason: str) -> str:
 
 def extend(assignment: Assignment) -> None:
     """Activity keeps a lease alive."""
-    Assignment.objects.filter(pk=assignment.pk, state=State.LEASED).update(expires_at=lease_end())
+    end = lease_end(assignment.batch.campaign)
+    Assignment.objects.filter(pk=assignment.pk, state=State.LEASED).update(expires_at=end)
 
 
 def submit(assignment: Assignment) -> Assignment:

@@ -42,11 +42,11 @@ def existing(dataset: Dataset) -> tuple[dict[int, list[int]], dict[int, set[int]
     """Per batch number its frames' ids and the copies there are."""
     frames_of: dict[int, list[int]] = {}
     copies_of: dict[int, set[int]] = {}
-    for number, copy in Batch.objects.filter(dataset=dataset).values_list("number", "copy"):
+    for number, copy in Batch.objects.filter(dataset=dataset, campaign=None).values_list("number", "copy"):
         frames_of.setdefault(number, [])
         copies_of.setdefault(number, set()).add(copy)
     first = {number: min(there) for number, there in copies_of.items()}
-    links = Batch.frames.through.objects.filter(batch__dataset=dataset)
+    links = Batch.frames.through.objects.filter(batch__dataset=dataset, batch__campaign=None)
     for number, copy, frame in links.values_list("batch__number", "batch__copy", "frame_id"):
         if copy == first[number]:
             frames_of[number].append(frame)
@@ -75,6 +75,11 @@ def add_copies(
         for copy in range(1, copies + 1)
         if copy not in copies_of[number]
     ]
+    return write(missing, frames_of)
+
+
+def write(missing: list[Batch], frames_of: dict[int, list[int]]) -> int:
+    """The rows of batches that are not there yet, with the frames of their numbers; how many."""
     Batch.objects.bulk_create(missing)
     links: Iterable[tuple[int, int]] = (
         (batch.pk, frame) for batch in missing for frame in frames_of[batch.number]

@@ -7,15 +7,19 @@ from datetime import timedelta
 from functools import wraps
 from typing import Any
 
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpRequest, HttpResponse, QueryDict
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import get_script_prefix, path, reverse
 from django.views.decorators.cache import never_cache
+from django.views.decorators.csrf import csrf_exempt, csrf_protect
 from django.views.decorators.http import require_http_methods, require_POST, require_safe
 
 from gtm_hit.crowd.entry import is_preview, worker_id
-from gtm_hit.models import Worker
+from gtm_hit.models import Layer, Worker
 from gtm_hit.ops.access.roles import SEES, layers_of
+from gtm_hit.crowd.platform import Outcome, Stay
+from gtm_hit.crowd.platforms import platform_of
+from gtm_hit.ops.campaigns import entry_rules, links as campaign_links
 from gtm_hit.ops.frames import parts
 from gtm_hit.ops.tutorial import lesson
 from gtm_hit.ops.work import assignments, limits, links, unsaved_leases, workers
@@ -24,6 +28,7 @@ from gtm_hit.pages.common.access import needs
 from gtm_hit.pages.common.address import client_address
 from gtm_hit.pages.common.catalog import workbench_catalog
 from gtm_hit.pages.common.modules import imported_by
+from gtm_hit.pages.work import arrivals, embedding, leaving
 
 # Whoever tries out ids of others is stopped; at a lab of two hundred a few come with another browser.
 NOT_PROVEN = limits.Limit("not proven", 60, timedelta(hours=1))
@@ -45,17 +50,29 @@ def valid_links_only(view: View) -> View:
 
 
 @require_http_methods(["GET", "HEAD", "POST"])
+@csrf_exempt
 @never_cache
 @valid_links_only
 def join(request: HttpRequest, token: str) -> HttpResponse:
+    """Whoever is told by his browser or login is protected by it; a submission's id needs no cookie."""
     entry = links.read_entry(token)
+    if arrivals.needs_no_cookie(entry):
+        return arrivals.arrive(request, entry)
+    if entry.campaign and entry.external_id is None and platform_of(entry.campaign).by_login:
+        return redirect("my-work")
+    return join_in_browser(request, entry)
+
+
+@csrf_protect
+def join_in_browser(request: HttpRequest, entry: links.Entry) -> HttpResponse:
     given = request.POST if request.method == "POST" else request.GET
-    external_id = entry.external_id or worker_id(given)
+    external_id = entry.external_id or named(entry, given)
     context = {
         "dataset": entry.dataset,
+        "campaign": entry.campaign,
         "external_id": external_id,
         "ask": not external_id,
-        "preview": is_preview(request.GET),
+        "preview": entry.campaign is None and is_preview(request.GET),
         "tutorial": lesson.available(),
     }
     if context["preview"]:
@@ -68,6 +85,13 @@ def join(request: HttpRequest, token: str) -> HttpResponse:
     if entry.closed:
         return render(request, "work/closed.html", context, status=410)
     return render(request, "work/join.html", context)
+
+
+def named(entry: links.Entry, given: QueryDict) -> str:
+    """Who the address or the form says it is."""
+    if entry.campaign is None:
+        return worker_id(given)
+    return platform_of(entry.campaign).arrival(given).external_id
 
 
 def whoever_enters(request: HttpRequest, entry: links.Entry, external_id: str) -> HttpResponse | None:
@@ -99,11 +123,13 @@ def first_entry(request: HttpRequest, entry: links.Entry, external_id: str) -> H
     except workers.NotProven:
         NOT_PROVEN.count(address)
         return render(request, "work/not_proven.html", status=403)
+    if entry.link:
+        campaign_links.used(entry.link)
     return browsers.remember(to_home(worker, entry), secret)
 
 
 def to_home(worker: Worker, entry: links.Entry) -> HttpResponse:
-    return redirect("work-home", token=links.worker_token(worker, entry.dataset))
+    return redirect("work-home", token=links.seat_token(links.Seat(worker, entry.dataset, entry.campaign)))
 
 
 @require_safe
@@ -111,64 +137,89 @@ def to_home(worker: Worker, entry: links.Entry) -> HttpResponse:
 @valid_links_only
 def home(request: HttpRequest, token: str) -> HttpResponse:
     seat = links.read_worker(token)
-    current = assignments.current(seat.worker, seat.dataset)
-    finished = list(assignments.finished(seat.worker, seat.dataset))
+    return embedding.framed(start_page(request, seat, token), seat.campaign)
+
+
+def start_page(request: HttpRequest, seat: links.Seat, token: str) -> HttpResponse:
+    current = assignments.current(seat.worker, seat.pool)
+    finished = list(assignments.finished(seat.worker, seat.pool))
+    if seat.submission and finished and not current:
+        return leaving.finished(request, seat, finished[0])
+    left = assignments.work_left(seat.worker, seat.pool)
+    end = leaving.exit_of(seat, Outcome.COMPLETED, finished[0].code or "") if finished else Stay()
     context = {
         "token": token,
         "dataset": seat.dataset,
+        "campaign": seat.campaign,
         "worker": seat.worker,
         "current": current,
         "done": len(assignments.done_frames(current)) if current else 0,
         "total": current.batch.frames.count() if current else 0,
         "finished": finished,
         "summary": assignments.summary(finished[0]) if finished and not current else None,
-        "work_left": current is not None or assignments.work_left(seat.worker, seat.dataset),
+        "work_left": current is not None or left,
+        "one_more": current is not None and left and assignments.room_for_another(seat.worker, seat.pool),
         "tutorial": lesson.available(),
+        "refusal": entry_rules.refusal(seat.campaign, seat.worker) if seat.campaign else None,
+        **leaving.shown(end),
     }
     return render(request, "work/home.html", context)
 
 
 @require_POST
+@csrf_exempt  # the key is in the address, and who has it needs no cookie
 @valid_links_only
 def start(request: HttpRequest, token: str) -> HttpResponse:
     seat = links.read_worker(token)
+    return embedding.framed(take(request, seat, token), seat.campaign)
+
+
+def take(request: HttpRequest, seat: links.Seat, token: str) -> HttpResponse:
+    context: dict[str, Any] = {"token": token, "dataset": seat.dataset}
+    another = request.POST.get("another") == "yes"
     try:
-        assignment = assignments.claim(seat.worker, seat.dataset, client_address(request))
+        assignment = assignments.claim(seat.worker, seat.pool, client_address(request), another)
     except unsaved_leases.TooManyUnsaved:
-        context = {"token": token, "dataset": seat.dataset}
         return render(request, "work/too_many.html", context, status=429)
+    except entry_rules.NotAdmitted as error:
+        return leaving.refused(request, seat, Outcome.NOT_ADMITTED, error.refusal.text, token)
     except assignments.NoFreeBatch:
-        return render(request, "work/no_batch.html", {"token": token, "dataset": seat.dataset})
+        if seat.submission and assignments.finished(seat.worker, seat.pool).exists():
+            return redirect("work-home", token=token)
+        if seat.submission:
+            return leaving.refused(request, seat, Outcome.NO_WORK, "", token)
+        return render(request, "work/no_batch.html", context)
     except assignments.BusyElsewhere as busy:
-        context = {
-            "dataset": busy.assignment.batch.dataset,
-            "link": reverse("annotate", args=[links.assignment_token(busy.assignment)]),
-        }
+        context["dataset"] = busy.assignment.batch.dataset
+        context["link"] = reverse("annotate", args=[links.assignment_token(busy.assignment)])
         return render(request, "work/busy.html", context)
-    return redirect("annotate", token=links.assignment_token(assignment))
+    return redirect("annotate", token=links.assignment_token(assignment, seat.submit_to))
 
 
 @require_safe
 @never_cache
 @valid_links_only
 def learn(request: HttpRequest, token: str) -> HttpResponse:
-    links.read_worker(token)
+    seat = links.read_worker(token)
     home_url = reverse("work-home", args=[token])
     if not lesson.available():
         return redirect(home_url)
-    return workbench(request, api=api("tutorial/"), token=token, mode="tutorial", home=home_url)
+    page = workbench(request, api=api("tutorial/"), token=token, mode="tutorial", home=home_url)
+    return embedding.framed(page, seat.campaign)
 
 
 @require_safe
 @never_cache
 @valid_links_only
 def annotate(request: HttpRequest, token: str) -> HttpResponse:
-    assignment = links.read_assignment(token)
-    seat_token = links.worker_token(assignment.worker, assignment.batch.dataset)
-    if assignments.read_only_reason(assignment) == "expired":
-        return render(request, "work/expired.html", {"token": seat_token, "assignment": assignment})
+    task = links.read_task(token)
+    seat_token, campaign = links.seat_token(task.seat), task.seat.campaign
+    if assignments.read_only_reason(task.assignment) == "expired":
+        page = render(request, "work/expired.html", {"token": seat_token, "assignment": task.assignment})
+        return embedding.framed(page, campaign)
     home_url = reverse("work-home", args=[seat_token])
-    return workbench(request, api=api("assignment/"), token=token, mode="assignment", home=home_url)
+    page = workbench(request, api=api("assignment/"), token=token, mode="assignment", home=home_url)
+    return embedding.framed(page, campaign)
 
 
 @require_safe

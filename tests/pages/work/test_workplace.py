@@ -9,7 +9,7 @@ from django.test import Client
 from django.utils import timezone
 
 from gtm_hit.models import Assignment, Dataset, Layer, Worker
-from gtm_hit.ops.work import assignments, batches, links
+from gtm_hit.ops.work import assignments, batches, links, signing
 from tests.work_scene import finish, make_dataset, make_layer, make_worker
 
 
@@ -73,7 +73,7 @@ def test_a_known_worker_goes_straight_to_his_page(client: Client, entry: str) ->
 def test_the_platforms_id_is_in_no_later_address(client: Client, entry: str) -> None:
     location = client.post(entry, {"worker_id": "secret-panel-id"})["Location"]
     token = location.split("/")[2]
-    assert links.unsign("worker", token) == [Worker.objects.get().pk, Dataset.objects.get().pk]
+    assert signing.unsign_dated("worker", token) == [Worker.objects.get().pk, Dataset.objects.get().pk]
     page = client.get(location)
     assert "secret-panel-id" not in text(page)
 

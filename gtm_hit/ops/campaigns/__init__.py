@@ -1,0 +1,1 @@
+"""Campaigns: rules, states, who may come in, links, and how it goes."""

@@ -1,0 +1,43 @@
+"""What the pages of a campaign share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django.http import Http404, HttpResponse
+from django.utils.translation import gettext as _
+
+from gtm_hit.models import Campaign, Worker
+
+
+def campaign_or_404(slug: str, name: str) -> Campaign:
+    found = Campaign.objects.select_related("dataset").filter(dataset__slug=slug, name=name).first()
+    if found is None:
+        raise Http404(_("There is no campaign “%(name)s”.") % {"name": name})
+    return found
+
+
+def worker_or_404(campaign: Campaign, pseudonym: str) -> Worker:
+    found = Worker.objects.select_related("user").filter(pseudonym=pseudonym, platform=campaign.platform)
+    worker = found.first()
+    if worker is None:
+        raise Http404(_("There is no worker “%(name)s”.") % {"name": pseudonym})
+    return worker
+
+
+def frame(campaign: Campaign, here: str, **more: Any) -> dict[str, Any]:
+    """What every page of a campaign needs."""
+    return {
+        "section": "datasets",
+        "tab": "campaigns",
+        "dataset": campaign.dataset,
+        "campaign": campaign,
+        "here": here,
+        **more,
+    }
+
+
+def csv_file(text: str, name: str) -> HttpResponse:
+    response = HttpResponse(text, content_type="text/csv; charset=utf-8")
+    response["Content-Disposition"] = f'attachment; filename="{name}.csv"'
+    return response
