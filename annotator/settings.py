@@ -170,6 +170,9 @@ UNSAVED_PER_ADDRESS = environment.integer("UNSAVED_PER_ADDRESS", 30, minimum=1, 
 UNSAVED_PER_LINK = environment.integer("UNSAVED_PER_LINK", 300, minimum=1, maximum=1_000_000)
 # Whose X-Forwarded-For is believed; from anybody else it is a claim.
 TRUSTED_PROXIES = environment.networks("TRUSTED_PROXIES", "")
+# Where Prolific's interface may be: a campaign chooses among these and can name no other.
+PROLIFIC_ADDRESSES = environment.words("PROLIFIC_ADDRESSES", "https://api.prolific.com")
+PROLIFIC_TOKEN = environment.text("PROLIFIC_TOKEN", "")  # for campaigns without a key of their own
 TUTORIAL_DATASET = environment.text("TUTORIAL_DATASET", "demo")
 
 LOG_LEVEL = environment.one_of("LOG_LEVEL", "INFO", ("DEBUG", "INFO", "WARNING", "ERROR"))

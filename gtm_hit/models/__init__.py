@@ -7,6 +7,8 @@ from gtm_hit.models.calibration import Calibration
 from gtm_hit.models.campaign import Campaign, CampaignWorker
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
+from gtm_hit.models.money import MoneyEntry, WorkClock
+from gtm_hit.models.outbox import HookEvent, OutboxRow, PlatformAccount, Submission
 from gtm_hit.models.release import Release
 from gtm_hit.models.work import Assignment, Batch, Worker
 
@@ -24,11 +26,17 @@ __all__ = [
     "Dataset",
     "EntryLink",
     "Frame",
+    "HookEvent",
     "Image",
     "Job",
     "Layer",
     "LayerFrame",
+    "MoneyEntry",
+    "OutboxRow",
+    "PlatformAccount",
     "Release",
     "Save",
+    "Submission",
+    "WorkClock",
     "Worker",
 ]

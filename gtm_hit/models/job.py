@@ -24,6 +24,7 @@ class Job(models.Model):
         IMPORT_ANNOTATIONS = "import_annotations", "import of annotations"
         REPLACE_CALIBRATION = "replace_calibration", "change of calibration"
         MAKE_RELEASE = "make_release", "release"
+        SEND_OUTBOX = "send_outbox", "messages to a platform"
 
     dataset = models.ForeignKey(
         Dataset,
