@@ -17,7 +17,7 @@ MAY_IMPORT = {
     "models": {"geometry"},
     "ops": {"geometry", "formats", "metrics", "demo", "models"},
     "crowd": {"models", "ops"},
-    "tasks": {"models", "ops"},
+    "tasks": {"models", "ops", "crowd"},
     "api": {"geometry", "formats", "metrics", "models", "ops", "crowd"},
     "pages": {"geometry", "formats", "metrics", "models", "ops", "crowd"},
     "management": {"geometry", "formats", "metrics", "demo", "models", "ops", "crowd"},

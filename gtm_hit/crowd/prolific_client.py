@@ -18,23 +18,9 @@ from gtm_hit.ops.outbox.platform import (
     StudyDraft,
     Unanswered,
     WorkAtPlatform,
+    require_reason,
 )
 
-CATEGORIES = (
-    "TOO_QUICKLY",
-    "TOO_SLOWLY",
-    "FAILED_INSTRUCTIONS",
-    "INCOMP_LONGITUDINAL",
-    "FAILED_CHECK",
-    "LOW_EFFORT",
-    "MALINGERING",
-    "NO_CODE",
-    "BAD_CODE",
-    "NO_DATA",
-    "UNSUPP_DEVICE",
-    "OTHER",
-)
-SHORTEST_MESSAGE = 100
 PAGE = 100
 MOST_PAGES = 2000
 ACTIONS = {"publish": "PUBLISH", "pause": "PAUSE", "resume": "START", "stop": "STOP"}
@@ -97,16 +83,6 @@ class ProlificClient:
 
     def _transition(self, submission: str, body: Mapping[str, str]) -> None:
         self.http.post(f"/api/v1/submissions/{quoted(submission)}/transition/", body)
-
-
-def require_reason(message: str, category: str) -> None:
-    """Raises Refused, as Prolific would, before anything is sent."""
-    if category not in CATEGORIES:
-        raise Refused(400, f"Prolific knows no category {category!r}.")
-    if len(message) < SHORTEST_MESSAGE:
-        raise Refused(
-            400, f"Prolific wants at least {SHORTEST_MESSAGE} characters of reason for a rejection."
-        )
 
 
 def bonus_lines(bonuses: list[Bonus]) -> str:

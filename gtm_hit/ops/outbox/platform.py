@@ -14,6 +14,22 @@ from typing import Protocol
 
 from gtm_hit.ops.errors import OperationError
 
+SHORTEST_REASON = 100  # characters of what a rejected worker is told
+CATEGORIES = (
+    "TOO_QUICKLY",
+    "TOO_SLOWLY",
+    "FAILED_INSTRUCTIONS",
+    "INCOMP_LONGITUDINAL",
+    "FAILED_CHECK",
+    "LOW_EFFORT",
+    "MALINGERING",
+    "NO_CODE",
+    "BAD_CODE",
+    "NO_DATA",
+    "UNSUPP_DEVICE",
+    "OTHER",
+)
+
 
 class PlatformError(OperationError):
     """The platform did not do what was asked; the message is for people."""
@@ -41,6 +57,15 @@ class TooFast(PlatformError):
 
 class Unanswered(PlatformError):
     """The answer was lost or says nothing: it may have happened or not."""
+
+
+def require_reason(message: str, category: str) -> None:
+    """What Prolific wants to hear with a rejection; raises Refused before anything is sent."""
+    if category not in CATEGORIES:
+        raise Refused(400, f"Prolific knows no category {category!r}.")
+    if len(message) < SHORTEST_REASON:
+        told = f"Prolific wants at least {SHORTEST_REASON} characters of reason for a rejection"
+        raise Refused(400, f"{told}; these are {len(message)}.")
 
 
 @dataclass(frozen=True)
