@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-from gtm_hit.pages import api_tokens, calibration, home, jobs, releases
+from gtm_hit.pages import api_tokens, calibration, home, hooks, jobs, releases
 from gtm_hit.pages.datasets import importing as dataset_imports
 from gtm_hit.pages.datasets import listing as datasets
 from gtm_hit.pages.layers import importing as annotation_imports
@@ -24,5 +24,6 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *dataset_imports.urlpatterns,
     *calibration.urlpatterns,
     *api_tokens.urlpatterns,
+    *hooks.urlpatterns,
     *workplace.urlpatterns,
 ]
