@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-from gtm_hit.pages import api_tokens, calibration, home, hooks, jobs, releases
+from gtm_hit.pages import api_tokens, calibration, home, hooks, jobs, pay, platform, releases
 from gtm_hit.pages.datasets import importing as dataset_imports
 from gtm_hit.pages.datasets import listing as datasets
 from gtm_hit.pages.layers import importing as annotation_imports
@@ -25,5 +25,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *calibration.urlpatterns,
     *api_tokens.urlpatterns,
     *hooks.urlpatterns,
+    *pay.urlpatterns,
+    *platform.urlpatterns,
     *workplace.urlpatterns,
 ]

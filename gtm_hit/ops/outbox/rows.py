@@ -131,3 +131,16 @@ def resolve(row: OutboxRow, happened: bool, by: User | None) -> None:
         decided_by=by,
         result={},
     )
+
+
+def decide(row: OutboxRow, action: str, by: User | None) -> None:
+    """`retry`, `withdraw`, `happened` or `not_happened`. Raises RowError."""
+    match action:
+        case "retry":
+            retry(row, by)
+        case "withdraw":
+            withdraw(row, by)
+        case "happened" | "not_happened":
+            resolve(row, action == "happened", by)
+        case _:
+            raise RowError(_("That cannot be decided about a row."))

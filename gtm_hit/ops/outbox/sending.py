@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from decimal import Decimal
 from typing import Any
@@ -16,7 +17,7 @@ from django.utils.translation import gettext as _
 from gtm_hit.models import Campaign, Job, OutboxRow
 from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.jobs.progress import Steps
-from gtm_hit.ops.outbox import accounts, reconciling, rows
+from gtm_hit.ops.outbox import accounts, reconciling, rows, statuses
 from gtm_hit.ops.outbox.platform import Bonus, NotSent, Platform, PlatformError, Refused, TooFast
 
 State, Kind = OutboxRow.State, OutboxRow.Kind
@@ -38,7 +39,8 @@ class Report:
 
 
 def start(campaign: Campaign, by: User | None = None) -> Job:
-    return queue.create_once(Job.Kind.SEND_OUTBOX, campaign.dataset, {"campaign": campaign.pk}, by)
+    parameters = {"campaign": campaign.pk, "name": campaign.name}
+    return queue.create_once(Job.Kind.SEND_OUTBOX, campaign.dataset, parameters, by)
 
 
 def run(mine: queue.Run, connect: Connect) -> dict[str, Any]:
@@ -49,7 +51,15 @@ def run(mine: queue.Run, connect: Connect) -> dict[str, Any]:
         platform = connect(campaign)
     except accounts.AccountError as error:
         raise queue.JobError(str(error)) from error
+    look(campaign, platform)
     return asdict(send(campaign, platform, lambda done, total: mine.report(done, total)))
+
+
+def look(campaign: Campaign, platform: Platform) -> None:
+    """What became of the submissions meanwhile; when it cannot be learnt now, the next run learns it."""
+    if accounts.of(campaign).study:
+        with suppress(PlatformError):
+            statuses.ask_all(campaign, platform)
 
 
 def resume(now: Any) -> list[Job]:

@@ -124,6 +124,13 @@ def book_confirmed(row: OutboxRow) -> None:
     )  # fmt: skip
 
 
+def can_be_taken_back(entry: MoneyEntry) -> bool:
+    """Bonuses and payments by hand, once. What was earned follows decisions, what was sent stays sent."""
+    by_hand = entry.kind == Kind.PAID and entry.key.startswith("hand:")
+    first = not entry.reverses_id and not hasattr(entry, "reversal")
+    return first and (entry.kind == Kind.BONUS_APPROVED or by_hand)
+
+
 def take_back(entry: MoneyEntry, by: User | None, note: str) -> MoneyEntry:
     """A bonus that was approved, or a payment by hand that never was, once. Raises PayError."""
     with holding(entry.campaign) as held:
@@ -131,8 +138,7 @@ def take_back(entry: MoneyEntry, by: User | None, note: str) -> MoneyEntry:
             raise PayError(_("This line is taken back already."))
         if entry.kind == Kind.BONUS_APPROVED and balance(held, entry.worker_id).to_pay < entry.amount:
             raise PayError(_("This bonus is paid, or on its way, already."))
-        by_hand = entry.kind == Kind.PAID and entry.key.startswith("hand:")
-        if entry.kind != Kind.BONUS_APPROVED and not by_hand:
+        if not can_be_taken_back(entry):
             raise PayError(_("Only bonuses and payments by hand can be taken back."))
         key, why = f"back:{entry.pk}", note[:300]
         return add(held, entry.worker_id, entry.kind, -entry.amount, key, user=by, note=why, reverses=entry)

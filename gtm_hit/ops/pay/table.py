@@ -188,8 +188,9 @@ def approve_bonuses(
 
 
 def lines_of(campaign: Campaign) -> QuerySet[MoneyEntry]:
-    found = MoneyEntry.objects.filter(campaign=campaign).select_related("worker", "user", "assignment__batch")
-    return found.order_by("-at", "-pk")
+    """Newest first."""
+    found = MoneyEntry.objects.filter(campaign=campaign)
+    return found.select_related("worker", "user", "assignment__batch", "reversal").order_by("-at", "-pk")
 
 
 def with_settled(campaign: Campaign) -> None:

@@ -250,7 +250,7 @@ def test_a_run_that_was_broken_off_is_taken_up_again(bonus: OutboxRow, campaign:
     assert sending.resume(timezone.now()) == []  # nobody has sent it yet
     rows.take(bonus.after_id or 0)
     (job,) = sending.resume(timezone.now())
-    assert job.parameters == {"campaign": campaign.pk}
+    assert job.parameters["campaign"] == campaign.pk
 
 
 def test_only_addresses_the_operator_named_are_asked(campaign: Campaign, settings: Any) -> None:
