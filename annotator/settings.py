@@ -148,6 +148,8 @@ SPECTACULAR_SETTINGS = {
         "AnnotationState": "gtm_hit.models.annotation.Annotation.State",
         "AssignmentState": "gtm_hit.models.work.Assignment.State",
         "JobState": "gtm_hit.models.job.Job.State",
+        "OutboxState": "gtm_hit.models.outbox.OutboxRow.State",
+        "OutboxKind": "gtm_hit.models.outbox.OutboxRow.Kind",
     },
 }
 
