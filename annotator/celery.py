@@ -37,6 +37,11 @@ app.conf.beat_schedule = {
         "schedule": 3600.0,
         "options": {"expires": 3599},
     },
+    "resume-outboxes": {
+        "task": "gtm_hit.tasks.resume_outboxes",
+        "schedule": 60.0,
+        "options": {"expires": 59},
+    },
     "expire-leases": {
         "task": "gtm_hit.tasks.expire_leases",
         "schedule": 60.0,

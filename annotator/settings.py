@@ -151,6 +151,8 @@ SPECTACULAR_SETTINGS = {
         "AssignmentState": "gtm_hit.models.work.Assignment.State",
         "JobState": "gtm_hit.models.job.Job.State",
         "CampaignState": "gtm_hit.models.campaign.Campaign.State",
+        "OutboxState": "gtm_hit.models.outbox.OutboxRow.State",
+        "OutboxKind": "gtm_hit.models.outbox.OutboxRow.Kind",
     },
 }
 
@@ -178,6 +180,9 @@ ENTRY_LINK_DAYS = environment.integer("ENTRY_LINK_DAYS", 180, minimum=0, maximum
 WORKER_LINK_DAYS = environment.integer("WORKER_LINK_DAYS", 90, minimum=0, maximum=36_500)
 # Panels whose pages may show ours in a frame and take its form; campaigns choose among them.
 EMBEDDING_ORIGINS = environment.words("EMBEDDING_ORIGINS", "")
+# Where Prolific's interface may be: a campaign chooses among these and can name no other.
+PROLIFIC_ADDRESSES = environment.words("PROLIFIC_ADDRESSES", "https://api.prolific.com")
+PROLIFIC_TOKEN = environment.text("PROLIFIC_TOKEN", "")  # for campaigns without a key of their own
 TUTORIAL_DATASET = environment.text("TUTORIAL_DATASET", "demo")
 
 LOG_LEVEL = environment.one_of("LOG_LEVEL", "INFO", ("DEBUG", "INFO", "WARNING", "ERROR"))

@@ -20,14 +20,20 @@ from gtm_hit.models import (
     Dataset,
     EntryLink,
     Frame,
+    HookEvent,
     Image,
     Job,
     Layer,
     LayerFrame,
     Membership,
+    MoneyEntry,
+    OutboxRow,
+    PlatformAccount,
     Release,
     RoleChange,
     Save,
+    Submission,
+    WorkClock,
     Worker,
 )
 
@@ -264,3 +270,53 @@ class ApiTokenAdmin(admin.ModelAdmin):
 
     def has_add_permission(self, request: HttpRequest) -> bool:
         return False  # a key is shown once, by the page that makes it
+
+
+@admin.register(MoneyEntry)
+class MoneyEntryAdmin(LookOnlyAdmin):
+    list_display = ["kind", "amount", "currency", "worker", "campaign", "user", "at"]
+    list_filter = ["kind", "campaign"]
+    list_select_related = ["worker", "campaign__dataset", "user"]
+    search_fields = ["worker__pseudonym", "campaign__name", "note"]
+    date_hierarchy = "at"
+
+
+@admin.register(WorkClock)
+class WorkClockAdmin(LookOnlyAdmin):
+    list_display = ["assignment", "counted", "told", "seen_at"]
+    list_select_related = ["assignment__batch__dataset", "assignment__worker"]
+    search_fields = ["assignment__worker__pseudonym"]
+
+
+@admin.register(OutboxRow)
+class OutboxRowAdmin(LookOnlyAdmin):
+    list_display = ["kind", "state", "worker", "amount", "campaign", "attempts", "sent_at", "done_at"]
+    list_filter = ["state", "kind", "campaign"]
+    list_select_related = ["worker", "campaign__dataset"]
+    search_fields = ["worker__pseudonym", "=submission"]
+
+
+@admin.register(PlatformAccount)
+class PlatformAccountAdmin(LookOnlyAdmin):
+    """Keys and secrets are in none of its fields."""
+
+    list_display = ["campaign", "study", "study_state", "address", "changed_by", "changed_at"]
+    list_select_related = ["campaign__dataset", "changed_by"]
+    search_fields = ["campaign__name", "=study"]
+    exclude = ["token", "hook_secret"]
+
+
+@admin.register(Submission)
+class SubmissionAdmin(LookOnlyAdmin):
+    list_display = ["submission", "status", "status_at", "campaign"]
+    list_filter = ["status", "campaign"]
+    list_select_related = ["campaign__dataset"]
+    search_fields = ["=submission", "=participant"]
+
+
+@admin.register(HookEvent)
+class HookEventAdmin(LookOnlyAdmin):
+    list_display = ["kind", "event_id", "campaign", "received_at"]
+    list_filter = ["kind", "campaign"]
+    list_select_related = ["campaign__dataset"]
+    search_fields = ["=event_id"]

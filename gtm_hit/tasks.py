@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from celery import shared_task
 from celery.signals import worker_ready
 from django.utils import timezone
 
+from gtm_hit.crowd.prolific import connect
 from gtm_hit.models import Job
 from gtm_hit.ops.calibration import job as calibration_job
 from gtm_hit.ops.datasets import job
@@ -16,6 +18,7 @@ from gtm_hit.ops.files import picture_cleanup, sources
 from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.layers import job as annotation_job
 from gtm_hit.ops.layers import unfinished
+from gtm_hit.ops.outbox import sending
 from gtm_hit.ops.releases import releasing
 from gtm_hit.ops.stitching import running as stitching
 from gtm_hit.ops.work import assignments
@@ -28,6 +31,7 @@ OPERATIONS: dict[str, queue.Operation] = {
     Job.Kind.MAKE_RELEASE: releasing.run,
     Job.Kind.REPLACE_CALIBRATION: calibration_job.run,
     Job.Kind.STITCH: stitching.run,
+    Job.Kind.SEND_OUTBOX: partial(sending.run, connect=connect),
 }
 
 
@@ -59,9 +63,15 @@ def expire_leases() -> None:
     assignments.expire_leases(timezone.now())
 
 
+@shared_task
+def resume_outboxes() -> None:
+    sending.resume(timezone.now())
+
+
 @worker_ready.connect
 def look_for_lost_jobs(**kwargs: Any) -> None:
     """A worker that comes back looks at once for what was lost meanwhile."""
     requeue_lost_jobs.delay()
     expire_exports.delay()  # a machine that is on for an hour at a time has to come to it, too
     remove_unused_pictures.delay()
+    resume_outboxes.delay()

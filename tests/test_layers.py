@@ -18,7 +18,7 @@ MAY_IMPORT = {
     "models": {"geometry"},
     "ops": {"geometry", "formats", "metrics", "demo", "stitching", "models"},
     "crowd": {"models", "ops"},
-    "tasks": {"models", "ops"},
+    "tasks": {"models", "ops", "crowd"},
     "api": {"geometry", "formats", "metrics", "models", "ops", "crowd"},
     "pages": {"geometry", "formats", "metrics", "models", "ops", "crowd"},
     "templatetags": {"models", "ops"},

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import uuid
+from datetime import timedelta
 from typing import Any
 
 from gtm_hit.models import Assignment, Camera, Dataset, Frame, Image, Layer, Worker
@@ -90,6 +91,12 @@ def save(layer: Layer, frame: Frame, rows: list[dict[str, Any]], revision: int =
     author = values.pop("author", None)
     save_id = values.pop("save_id", None) or uuid.uuid4()
     return saving.save_frame(layer, frame, author, save_id, revision, rows, **values)
+
+
+def minutes_pass(assignment: Assignment, minutes: float = 10) -> None:
+    """Since the lease, so that seconds of a save are believed."""
+    began = assignment.leased_at - timedelta(minutes=minutes)
+    Assignment.objects.filter(pk=assignment.pk).update(leased_at=began)
 
 
 def do_frames(assignment: Assignment) -> None:

@@ -48,6 +48,7 @@ GONE = {
 SCOPES = {
     Job.Kind.EXPORT_LAYER: ApiToken.Scope.RELEASE,
     Job.Kind.MAKE_RELEASE: ApiToken.Scope.RELEASE,
+    Job.Kind.SEND_OUTBOX: ApiToken.Scope.WORK,
 }
 
 

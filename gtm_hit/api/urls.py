@@ -7,7 +7,7 @@ from django.views.decorators.gzip import gzip_page
 from drf_spectacular.views import SpectacularAPIView
 
 # Importing it tells drf-spectacular about the tokens.
-from gtm_hit.api import calibration, jobs, releases, roles, stitching, work
+from gtm_hit.api import calibration, jobs, outbox, pay, platform, releases, roles, stitching, work
 from gtm_hit.api.common import schema  # noqa: F401
 from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.common.docs import DocsView
@@ -65,6 +65,24 @@ one_layer: list[URLPattern | URLResolver] = [
     path("statistics/<slug:figure>.<slug:kind>", statistics.StatisticsFigure.as_view()),
     path("exports/", releases.Exports.as_view()),
 ]
+campaign_pay: list[URLPattern | URLResolver] = [
+    path("pay/", pay.Pay.as_view()),
+    path("pay/bonuses/", pay.Bonuses.as_view()),
+    path("pay/payments/", pay.Payments.as_view()),
+    path("pay/ledger/", pay.Ledger.as_view()),
+    path("pay/ledger/<int:pk>/take-back/", pay.TakeBack.as_view()),
+    path("pay/<slug:what>.csv", pay.PayTable.as_view()),
+    path("outbox/", outbox.Outbox.as_view()),
+    path("outbox/payouts/", outbox.Payouts.as_view()),
+    path("outbox/send/", outbox.Send.as_view()),
+    path("outbox/<int:pk>/", outbox.OneRow.as_view()),
+    path("outbox/files/<slug:what>.csv", outbox.HandoverFile.as_view()),
+    path("outbox/files/<slug:what>/done/", outbox.HandoverDone.as_view()),
+    path("outbox/submissions/", outbox.Submissions.as_view()),
+    path("platform/", platform.Account.as_view()),
+    path("platform/draft/", platform.DraftStudy.as_view()),
+    path("platform/study/", platform.ChangeStudy.as_view()),
+]
 one_dataset: list[URLPattern | URLResolver] = [
     path("", listing.OneDataset.as_view()),
     path("cameras/", listing.Cameras.as_view()),
@@ -92,6 +110,7 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("stitching/conflicts/<int:pk>/", stitching.OneConflict.as_view()),
     path("stitching/conflicts/<int:pk>/decide/", stitching.DecideConflict.as_view()),
     path("stitching/conflicts/<int:pk>/undo/", stitching.UndoConflict.as_view()),
+    path("campaigns/<str:name>/", include(campaign_pay)),
     path("releases/", releases.Releases.as_view()),
     path("releases/<int:number>/", releases.OneRelease.as_view()),
     path("releases/<int:number>/download/", releases.DownloadRelease.as_view()),

@@ -8,6 +8,8 @@ from gtm_hit.models.campaign import Campaign, CampaignWorker
 from gtm_hit.models.campaign_link import CampaignLink
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
+from gtm_hit.models.money import MoneyEntry, WorkClock
+from gtm_hit.models.outbox import HookEvent, OutboxRow, PlatformAccount, Submission
 from gtm_hit.models.release import Release
 from gtm_hit.models.role import Membership, Role, RoleChange
 from gtm_hit.models.stitching import StitchConflict, StitchedFrame, Stitching, StitchingRun
@@ -28,11 +30,15 @@ __all__ = [
     "Dataset",
     "EntryLink",
     "Frame",
+    "HookEvent",
     "Image",
     "Job",
     "Layer",
     "LayerFrame",
     "Membership",
+    "MoneyEntry",
+    "OutboxRow",
+    "PlatformAccount",
     "Release",
     "Role",
     "RoleChange",
@@ -41,5 +47,7 @@ __all__ = [
     "StitchedFrame",
     "Stitching",
     "StitchingRun",
+    "Submission",
+    "WorkClock",
     "Worker",
 ]

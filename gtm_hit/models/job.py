@@ -25,6 +25,7 @@ class Job(models.Model):
         REPLACE_CALIBRATION = "replace_calibration", "change of calibration"
         MAKE_RELEASE = "make_release", "release"
         STITCH = "stitch", "stitching into ground truth"
+        SEND_OUTBOX = "send_outbox", "messages to a platform"
 
     dataset = models.ForeignKey(
         Dataset,

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-from gtm_hit.pages import api_tokens, calibration, home, jobs, people, releases
+from gtm_hit.pages import api_tokens, calibration, home, hooks, jobs, pay, people, platform, releases
 from gtm_hit.pages.campaigns import links as campaign_links, listing as campaigns, rules as campaign_rules, workers as campaign_workers
 from gtm_hit.pages.datasets import importing as dataset_imports
 from gtm_hit.pages.datasets import listing as datasets
@@ -30,6 +30,9 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *calibration.urlpatterns,
     *api_tokens.urlpatterns,
     *people.urlpatterns,
+    *hooks.urlpatterns,
+    *pay.urlpatterns,
+    *platform.urlpatterns,
     *workplace.urlpatterns,
     *my_work.urlpatterns,
     *invitation.urlpatterns,

@@ -18,6 +18,7 @@ from gtm_hit.ops.calibration.versions import in_place_id
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.frames.row import FIELDS, Row
 from gtm_hit.ops.frames.rules import checked
+from gtm_hit.ops.pay import clock
 from gtm_hit.ops.work import assignments
 
 Author = Worker | AbstractBaseUser | None
@@ -124,6 +125,8 @@ def write_save(layer: Layer, frame: Frame, save: Save, rows: list[Row]) -> Frame
     if head.revision != save.revision - 1:
         raise StaleSave(read_frame(layer, frame))
     write_rows(layer, frame, rows)
+    if assignment is not None:
+        save.seconds = clock.believed(assignment, save.seconds, timezone.now())
     save.layer_frame = head
     save.calibration_id = in_place_id(layer.dataset_id)
     save.save(force_insert=True)

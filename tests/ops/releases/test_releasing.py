@@ -22,7 +22,7 @@ from gtm_hit.ops.work import assignments, batches
 from gtm_hit.tasks import OPERATIONS
 from tests.disk_events import recorded
 from tests.ops.square_layer import fill, make_square
-from tests.work_scene import as_sent, finish, make_layer, make_worker, row
+from tests.work_scene import as_sent, finish, make_layer, make_worker, minutes_pass, row
 
 pytestmark = pytest.mark.django_db
 
@@ -156,6 +156,7 @@ def test_a_workers_layer_is_released_under_the_pseudonym_alone(dataset: Dataset)
     assignment = assignments.claim(worker, dataset)
     frame = Frame.objects.get(dataset=dataset, number=5)
     rows = [row(1, 1220), row(2, 2440, origin="interpolated")]
+    minutes_pass(assignment)
     saving.save_frame(assignment.layer, frame, worker, uuid.uuid4(), 0, rows, done=True, seconds=30.0)
     made = release(assignment.layer)
     assert [(each["worker"], each["origin"], float(each["seconds"])) for each in provenance(made)] == [
@@ -181,6 +182,7 @@ def accepted_truth(dataset: Dataset, layer: Layer) -> Layer:
     assignment = assignments.claim(worker, dataset)
     frame = Frame.objects.get(dataset=dataset, number=0)
     rows = [{**each, "person": index} for index, each in enumerate(rows_of(layer, 0), start=1)]
+    minutes_pass(assignment)
     saving.save_frame(assignment.layer, frame, worker, uuid.uuid4(), 0, rows, done=True, seconds=24.0)
     finish(assignment)
     Assignment.objects.filter(pk=assignment.pk).update(state=Assignment.State.ACCEPTED)

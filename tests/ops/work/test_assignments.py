@@ -20,7 +20,7 @@ from gtm_hit.ops.work.assignments import (
     work_left,
 )
 from gtm_hit.ops.work.batches import make_batches
-from tests.work_scene import do_frames, finish, make_dataset, make_layer, make_worker, row, save
+from tests.work_scene import do_frames, finish, make_dataset, make_layer, make_worker, minutes_pass, row, save
 
 
 @pytest.fixture
@@ -235,6 +235,7 @@ def test_a_rejected_batch_is_free_for_others_only(dataset: Dataset, alice: Worke
 def test_the_summary_counts_frames_people_and_minutes(dataset: Dataset, alice: Worker) -> None:
     assignment = claim(alice, dataset)
     frame = dataset.frames.get(number=5)
+    minutes_pass(assignment)
     save(assignment.layer, frame, [row(1), row(2, 9)], author=alice, done=True, seconds=90)
     said = summary(finish(assignment))
     assert said["frames"][:2] == [{"number": 0, "people": 0}, {"number": 5, "people": 2}]

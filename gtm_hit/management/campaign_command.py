@@ -1,0 +1,59 @@
+"""Commands about one campaign, named by its dataset and its own name."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser
+from collections.abc import Iterator
+from contextlib import contextmanager
+from decimal import Decimal, InvalidOperation
+
+from django.contrib.auth.models import User
+from django.core.management.base import BaseCommand, CommandError
+
+from gtm_hit.management.lookups import dataset_named
+from gtm_hit.models import Campaign
+from gtm_hit.ops.errors import OperationError
+
+
+class CampaignCommand(BaseCommand):
+    def add_arguments(self, parser: ArgumentParser) -> None:
+        parser.add_argument("slug", help="the dataset")
+        parser.add_argument("campaign", help="the campaign's name")
+        parser.add_argument(
+            "--as", dest="username", metavar="USER", help="under whose name it is written down"
+        )
+
+
+def campaign_named(slug: str, name: str) -> Campaign:
+    """With its dataset; raises CommandError that tells which campaigns there are."""
+    found = Campaign.objects.select_related("dataset").filter(dataset=dataset_named(slug))
+    campaign = found.filter(name=name).first()
+    if campaign is None:
+        names = ", ".join(found.values_list("name", flat=True)) or "none"
+        raise CommandError(f"no campaign {name} in dataset {slug}; there are: {names}")
+    return campaign
+
+
+def user_named(username: str | None) -> User | None:
+    if username is None:
+        return None
+    user = User.objects.filter(username=username).first()
+    if user is None:
+        raise CommandError(f"There is no user {username!r}.")
+    return user
+
+
+def amount(text: str) -> Decimal:
+    try:
+        return Decimal(text)
+    except InvalidOperation:
+        raise CommandError(f"{text!r} is no amount of money") from None
+
+
+@contextmanager
+def told() -> Iterator[None]:
+    """What an operation refuses ends the command with its words."""
+    try:
+        yield
+    except OperationError as error:
+        raise CommandError(str(error)) from error

@@ -1,0 +1,1 @@
+"""What is told to platforms: planned as rows, sent once, reconciled when an answer was lost."""

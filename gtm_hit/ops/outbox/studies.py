@@ -1,0 +1,83 @@
+"""The study that brings workers: drafted here, published, paused and looked at through the platform."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import replace
+
+from django.contrib.auth.models import User
+from django.utils.translation import gettext as _
+
+from gtm_hit.models import Batch, Campaign, PlatformAccount
+from gtm_hit.ops.errors import OperationError
+from gtm_hit.ops.outbox import accounts
+from gtm_hit.ops.outbox.platform import Platform, Study, StudyDraft
+
+ACTIONS = ("publish", "pause", "resume", "stop")
+PLACEHOLDERS = "PROLIFIC_PID={{%PROLIFIC_PID%}}&STUDY_ID={{%STUDY_ID%}}&SESSION_ID={{%SESSION_ID%}}"
+
+
+class StudyError(OperationError):
+    """The study stays as it is; the message says why."""
+
+
+def proposed(campaign: Campaign, address: str = "") -> StudyDraft:
+    """What the campaign's rules make of a study."""
+    code = accounts.of(campaign).completion_code or secrets.token_hex(4).upper()
+    joint = "&" if "?" in address else "?"
+    return StudyDraft(
+        title=campaign.title or campaign.name,
+        description=campaign.instructions,
+        address=f"{address}{joint}{PLACEHOLDERS}" if address else "",
+        places=Batch.objects.filter(campaign=campaign).count(),
+        minutes=campaign.expected_minutes,
+        reward=campaign.pay_per_batch,
+        completion_code=code,
+    )
+
+
+def draft(campaign: Campaign, platform: Platform, wanted: StudyDraft, by: User | None) -> PlatformAccount:
+    """Nobody sees a draft and nothing is paid for it. Raises StudyError, or what the platform says."""
+    account = accounts.of(campaign)
+    if account.study:
+        raise StudyError(_("This campaign has a study already: %(study)s.") % {"study": account.study})
+    require(wanted)
+    cleaned = replace(wanted, title=wanted.title.strip(), description=wanted.description.strip())
+    return keep(account, platform.create_study(cleaned), by, wanted.completion_code)
+
+
+def require(wanted: StudyDraft) -> None:
+    if not wanted.title.strip() or not wanted.description.strip():
+        raise StudyError(_("A study needs a title and a description."))
+    if not wanted.address.startswith("https://"):
+        raise StudyError(_("Workers need an address that begins with https://."))
+    if wanted.places < 1 or wanted.minutes < 1 or wanted.reward <= 0:
+        raise StudyError(_("Places, minutes and reward must be more than nothing."))
+
+
+def change(campaign: Campaign, platform: Platform, action: str, by: User | None) -> PlatformAccount:
+    """`publish`, `pause`, `resume` or `stop`; publishing is what costs money."""
+    account = existing(campaign)
+    if action not in ACTIONS:
+        raise StudyError(_("A study is published, paused, resumed or stopped."))
+    return keep(account, platform.change_study(account.study, action), by)
+
+
+def look(campaign: Campaign, platform: Platform) -> tuple[PlatformAccount, Study]:
+    account = existing(campaign)
+    study = platform.study(account.study)
+    return keep(account, study, account.changed_by), study
+
+
+def existing(campaign: Campaign) -> PlatformAccount:
+    account = accounts.of(campaign)
+    if not account.study:
+        raise StudyError(_("There is no study yet."))
+    return account
+
+
+def keep(account: PlatformAccount, study: Study, by: User | None, code: str = "") -> PlatformAccount:
+    account.study, account.study_state, account.changed_by = study.identifier, study.state[:40], by
+    account.completion_code = code or account.completion_code
+    account.save()
+    return account

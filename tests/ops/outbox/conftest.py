@@ -1,0 +1,67 @@
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from django.contrib.auth.models import User
+
+from gtm_hit.crowd.prolific import connect
+from gtm_hit.models import Assignment, Campaign, OutboxRow, Worker
+from gtm_hit.ops.outbox import planning, sending
+from tests.paid_campaign import assign, become, make_account, make_campaign
+from tests.prolific_server import TOKEN, Prolific, prolific_server
+from tests.work_scene import make_worker
+
+REASON = (
+    "Most of the people near the fountain were not marked in any of the ten frames of this batch. Look again."
+)
+State = Assignment.State
+
+
+@pytest.fixture
+def prolific(settings: Any) -> Iterator[Prolific]:
+    with prolific_server() as server:
+        settings.PROLIFIC_ADDRESSES = [server.base]
+        server.add("s1", "ada")
+        yield server
+
+
+@pytest.fixture
+def campaign(db: None, prolific: Prolific) -> Campaign:
+    campaign = make_campaign(platform=Campaign.Platform.PROLIFIC)
+    make_account(campaign, token=TOKEN)
+    return campaign
+
+
+@pytest.fixture
+def ada(db: None) -> Worker:
+    return make_worker("ada", "prolific")
+
+
+@pytest.fixture
+def manager(db: None) -> User:
+    return User.objects.create_user("manager", is_staff=True)
+
+
+@pytest.fixture
+def work(campaign: Campaign, ada: Worker) -> Assignment:
+    """Handed in, half an hour of it, under the submission s1."""
+    return assign(campaign, ada, State.SUBMITTED, minutes=30, submission="s1")
+
+
+def decide(work: Assignment, outcome: str, **values: Any) -> OutboxRow | None:
+    return planning.plan_decision(become(work, outcome), outcome, **values)
+
+
+def send(campaign: Campaign) -> sending.Report:
+    return sending.send(campaign, connect(campaign), lambda done, total: None)
+
+
+def hurry(campaign: Campaign) -> None:
+    """The waits between attempts are over."""
+    OutboxRow.objects.filter(campaign=campaign).update(not_before=None)
+
+
+def states(campaign: Campaign) -> list[tuple[str, str]]:
+    return list(OutboxRow.objects.filter(campaign=campaign).order_by("pk").values_list("kind", "state"))
