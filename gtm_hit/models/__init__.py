@@ -8,11 +8,13 @@ from gtm_hit.models.campaign import Campaign, CampaignWorker
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
 from gtm_hit.models.release import Release
+from gtm_hit.models.review import Appeal, Category, Comment, Mend, ReviewChoice, Transition
 from gtm_hit.models.work import Assignment, Batch, Worker
 
 __all__ = [
     "Annotation",
     "ApiToken",
+    "Appeal",
     "AppendOnlyError",
     "Assignment",
     "Attempt",
@@ -21,6 +23,8 @@ __all__ = [
     "Camera",
     "Campaign",
     "CampaignWorker",
+    "Category",
+    "Comment",
     "Dataset",
     "EntryLink",
     "Frame",
@@ -28,7 +32,10 @@ __all__ = [
     "Job",
     "Layer",
     "LayerFrame",
+    "Mend",
     "Release",
+    "ReviewChoice",
     "Save",
+    "Transition",
     "Worker",
 ]
