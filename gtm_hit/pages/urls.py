@@ -8,7 +8,8 @@ from gtm_hit.pages.datasets import listing as datasets
 from gtm_hit.pages.layers import importing as annotation_imports
 from gtm_hit.pages.layers import listing as layers
 from gtm_hit.pages.quality import comparing, statistics, text_files
-from gtm_hit.pages.work import batches, workplace
+from gtm_hit.pages.review import desk, waiting
+from gtm_hit.pages.work import batches, decision, workplace
 
 urlpatterns: list[URLPattern | URLResolver] = [
     *home.urlpatterns,
@@ -25,4 +26,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *calibration.urlpatterns,
     *api_tokens.urlpatterns,
     *workplace.urlpatterns,
+    *waiting.urlpatterns,
+    *desk.urlpatterns,
+    *decision.urlpatterns,
 ]

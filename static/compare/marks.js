@@ -18,7 +18,7 @@ import { sideOf } from "./store.js";
  */
 
 /**
- * How the four kinds of people look: colour, line and sign all say the same. Colours lie on photographs, so they
+ * How the kinds of people look: colour, line and sign all say the same. Colours lie on photographs, so they
  * are the same in the dark and the light theme.
  * @type {Record<Kind, {sign: string, words: () => string, look: KindLook}>}
  */
@@ -26,10 +26,11 @@ export const KINDS = {
   missed: { sign: "×", words: () => gettext("missed"), look: { colour: "#ff8f86", width: 2, dash: [7, 4] } },
   extra: { sign: "+", words: () => gettext("extra"), look: { colour: YELLOW, width: 2, dash: [2, 3] } },
   swapped: { sign: "◆", words: () => gettext("swapped"), look: { colour: "#d3a3ff", width: 2.5, dash: [] } },
+  moved: { sign: "→", words: () => gettext("moved"), look: { colour: "#ffb26b", width: 2, dash: [] } },
   matched: { sign: "○", words: () => gettext("matched"), look: { colour: WHITE, width: 1, dash: [] } },
 };
 
-/** Mistakes first. @type {Kind[]} */
+/** Mistakes first; who is called moved is the desk's to say. @type {import("./store.js").Counted[]} */
 export const ORDER = ["missed", "extra", "swapped", "matched"];
 
 const PLAIN = { box: 1, label: 1 };

@@ -33,9 +33,11 @@ export class MarksPanel {
 
   show() {
     const { line } = this._store;
+    /** @type {import("./store.js").Kind[]} */
+    const kinds = line.moved === undefined ? ORDER : [...ORDER.slice(0, -1), "moved", "matched"];
     this._counts.replaceChildren(
-      ...ORDER.map((kind) => {
-        const count = kind === "matched" ? line.matched - line.swapped : line[kind];
+      ...kinds.map((kind) => {
+        const count = kind === "matched" ? line.matched - line.swapped : (line[kind] ?? 0);
         return element("span", {}, signOf(kind), ` ${count} ${KINDS[kind].words()}`);
       }),
     );
@@ -59,6 +61,7 @@ export class MarksPanel {
     const centimetres = Math.round((distance ?? 0) * 1000) / 10;
     if (kind === "missed") return gettext("missed");
     if (kind === "extra") return gettext("extra");
+    if (distance === null) return ""; // there is nothing to compare with
     const away = ngettext("{n} cm off", "{n} cm off", centimetres);
     if (kind === "swapped") return gettext("was {before}, now {now}, {away}", { before, now: found.person, away });
     return truth.person === found.person ? away : gettext("found as {now}, {away}", { now: found.person, away });

@@ -3,14 +3,15 @@ import { Emitter } from "../base/emitter.js";
 /**
  * Which frame is looked at, who is in it, and who is chosen. Frames are known in two orders: worst first, and in
  * time. Emits `frame`, `marks` and `selection` {after}.
- * @typedef {"missed"|"extra"|"swapped"|"matched"} Kind
+ * @typedef {"missed"|"extra"|"swapped"|"matched"} Counted
+ * @typedef {Counted|"moved"} Kind somebody moved is matched, but far off
  * @typedef {{person: number, position: number, height: number|null, radius: number|null}} Side of a mark
- * @typedef {{frame: number, truth: number, found: number} & Record<Kind, number>} Line of the table of frames;
+ * @typedef {{frame: number, truth: number, found: number, moved?: number} & Record<Counted, number>} Line of the table of frames;
  *   swapped people are among the matched
  * @typedef {{distance: number|null, before: number|null}} Told metres, and the number somebody swapped had before
  * @typedef {Told & {kind: "missed", truth: Side, found: null}} Missed
  * @typedef {Told & {kind: "extra", truth: null, found: Side}} Extra
- * @typedef {Told & {kind: "swapped"|"matched", truth: Side, found: Side}} Pair
+ * @typedef {Told & {kind: "swapped"|"moved"|"matched", truth: Side, found: Side}} Pair
  * @typedef {Missed|Extra|Pair} MarkJSON as the server sends it
  * @typedef {MarkJSON & {key: number, main: Side}} Mark `main`: one of its sides, numbered by its key
  * @typedef {{frames: ReadonlySet<number>}} Change never said: nobody moves here

@@ -60,7 +60,10 @@ def differences(assignment: Assignment, reference: Layer | None) -> Differences:
     frames = []
     for number in own.numbers.tolist():
         comparison = other if other is not None and number in shared else own
-        frames.append(FrameMarks(number, number in shared, frame_marks(comparison, number)))
+        found = frame_marks(comparison, number)
+        if number not in shared:
+            found = [{**mark, "distance": None} for mark in found]
+        frames.append(FrameMarks(number, number in shared, found))
     return Differences(frames, worst_first(frames))
 
 

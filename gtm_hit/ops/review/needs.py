@@ -76,14 +76,17 @@ def reason(asked: Asked) -> None:
 
 def long_reason(asked: Asked) -> None:
     reason(asked)
-    campaign = asked.assignment.batch.campaign
-    prolific = campaign is not None and campaign.platform == Campaign.Platform.PROLIFIC
-    least = PLATFORM_LETTERS if prolific else FEW_LETTERS
+    least = least_letters(asked.assignment)
     if len(asked.reason) < least:
-        text = _(
-            "The reason of a rejection has at least %(least)d characters: the worker has to learn from it."
-        )
+        text = _("Explain the rejection in %(least)d characters or more: the worker is to learn from it.")
         raise Incomplete(text % {"least": least})
+
+
+def least_letters(assignment: Assignment) -> int:
+    """Of the reason of a rejection."""
+    campaign = assignment.batch.campaign
+    prolific = campaign is not None and campaign.platform == Campaign.Platform.PROLIFIC
+    return PLATFORM_LETTERS if prolific else FEW_LETTERS
 
 
 def not_too_long(asked: Asked) -> None:

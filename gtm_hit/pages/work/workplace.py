@@ -120,6 +120,7 @@ def home(request: HttpRequest, token: str) -> HttpResponse:
         "done": len(assignments.done_frames(current)) if current else 0,
         "total": current.batch.frames.count() if current else 0,
         "finished": finished,
+        "decisions": [(one, links.assignment_token(one)) for one in finished],
         "summary": assignments.summary(finished[0]) if finished and not current else None,
         "work_left": current is not None or assignments.work_left(seat.worker, seat.dataset),
         "tutorial": lesson.available(),
