@@ -15,9 +15,10 @@ from pytest_django.live_server_helper import LiveServer
 
 from gtm_hit.models import Assignment, Comment
 from gtm_hit.ops.review import transitions
+from gtm_hit.ops.review.comments import Pin, remark
 from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.work import assignments
-from tests.browser.street import GRID, Street, annotate, make_street
+from tests.browser.street import GRID, Street, annotate, make_street, workbench_path
 from tests.work_scene import make_layer, row, save
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
@@ -186,3 +187,27 @@ def test_a_corrected_copy_is_opened_in_the_workbench_and_accepted_in_its_place(
     expect(reviewer).to_have_url(f"{live_server.url}/datasets/street/review/")
     last = assignment.transitions.last()
     assert last and (last.action, last.user) == ("accept_mended", rita)
+
+
+def test_a_worker_finds_the_comment_on_its_frame_answers_it_and_says_it_is_done(
+    reviewer: Page, live_server: LiveServer, street: Street, rita: User
+) -> None:
+    assignment = work(street, faults=True)
+    remark(assignment, rita, "This one is too far right.", Pin(5, 1))
+    transitions.transition(assignment, Action.RETURN, rita)
+    page = reviewer
+    page.context.clear_cookies()
+    page.goto(live_server.url + workbench_path(assignment))
+    expect(page.locator("#workbench")).to_have_attribute("data-ready", "true")
+    comment = page.locator(".comments li")
+    expect(comment).to_contain_text("This one is too far right.")
+    comment.get_by_role("button", name="Frame 2, person 1").click()
+    expect(comment).to_have_class("here")
+    expect(page.locator('.people [aria-selected="true"]')).to_contain_text("1")
+    comment.get_by_label("Answer").fill("Moved to the left")
+    comment.get_by_label("Answer").press("Enter")
+    expect(comment).to_contain_text("You: Moved to the left")
+    comment.get_by_role("button", name="Done").click()
+    expect(page.locator(".comments h2")).to_contain_text("All comments are done")
+    assert [one.text for one in Comment.objects.filter(answers__isnull=False)] == ["Moved to the left"]
+    assert Comment.objects.get(answers=None).resolved_at

@@ -70,6 +70,10 @@ def resolve(comment: Comment, by: User | Worker, resolved: bool) -> Comment:
     return comment
 
 
+def exist(assignment: Assignment) -> bool:
+    return Comment.objects.filter(assignment=assignment).exists()
+
+
 def threads(assignment: Assignment) -> QuerySet[Comment]:
     """The remarks with their answers, by frame, those about everything first; two queries."""
     answers = Comment.objects.select_related("user", "worker").order_by("pk")

@@ -16,6 +16,7 @@ from django.views.decorators.http import require_http_methods, require_POST, req
 from gtm_hit.crowd.entry import is_preview, worker_id
 from gtm_hit.models import Layer, Worker
 from gtm_hit.ops.frames import parts
+from gtm_hit.ops.review import comments
 from gtm_hit.ops.tutorial import lesson
 from gtm_hit.ops.work import assignments, limits, links, unsaved_leases, workers
 from gtm_hit.pages.common import browsers
@@ -168,7 +169,9 @@ def annotate(request: HttpRequest, token: str) -> HttpResponse:
     if assignments.read_only_reason(assignment) == "expired":
         return render(request, "work/expired.html", {"token": seat_token, "assignment": assignment})
     home_url = reverse("work-home", args=[seat_token])
-    return workbench(request, api=api("assignment/"), token=token, mode="assignment", home=home_url)
+    told = "true" if comments.exist(assignment) else ""
+    where = {"api": api("assignment/"), "token": token, "home": home_url}
+    return workbench(request, mode="assignment", comments=told, **where)
 
 
 @require_safe
