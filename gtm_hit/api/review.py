@@ -27,6 +27,7 @@ from gtm_hit.api.common.staff import (
 )
 from gtm_hit.models import ApiToken, Assignment, Campaign, Category, Comment
 from gtm_hit.ops.access.roles import Role
+from gtm_hit.ops.quality.layer_rows import QualityError
 from gtm_hit.ops.review import comments, facts, mending, queue
 from gtm_hit.ops.review.differences import differences
 from gtm_hit.ops.review.machine import Action
@@ -143,11 +144,15 @@ class ReviewDifferences(ReviewView):
         found, reference = chosen(assignment, name)
         if name and reference is None:
             raise invalid("reference", f"There is no layer {name} with frames of this batch.")
+        try:
+            differing = differences(assignment, reference.layer if reference else None)
+        except QualityError as error:
+            raise invalid("reference", error) from error
         return Response(
             {
                 "reference": reference.layer.name if reference else None,
                 "references": [{"name": one.layer.name, "about": one.about} for one in found],
-                **differences(assignment, reference.layer if reference else None).as_numbers(),
+                **differing.as_numbers(),
             }
         )
 

@@ -2,7 +2,6 @@ import { element } from "../base/dom.js";
 import { gettext } from "../base/messages.js";
 import { boxBounds, drawBox, drawFoot, drawLabel, drawPath, labelWidth } from "../views/marks.js";
 import { HALO, WHITE, YELLOW } from "../views/styles.js";
-import { sideOf } from "./store.js";
 
 /**
  * @typedef {import("../geometry/lens.js").XY} XY
@@ -51,7 +50,8 @@ export function markItem(pane, mark, selected, labels) {
   if (!shown.length) return null;
   const look = { ...KINDS[mark.kind].look, selected };
   const feet = shown.map(({ side, point }) => ({ ...transform.toPane(point.x, point.y), side }));
-  const box = view.index === null ? around(feet) : paneBox(shown[0].shape, transform);
+  const boxed = shown.find(({ side }) => side === mark.shown) ?? shown[0];
+  const box = view.index === null ? around(feet) : paneBox(boxed.shape, transform);
   const label = labels || selected ? labelOf(mark, selected) : "";
   return {
     id: mark.key,
@@ -73,7 +73,7 @@ export function markItem(pane, mark, selected, labels) {
  */
 function labelOf(mark, selected) {
   const { kind } = mark;
-  const number = sideOf(mark).person;
+  const number = mark.shown.person;
   if (kind === "matched") return String(number);
   const numbers = kind === "swapped" ? `${mark.before}→${mark.found.person}` : number;
   return `${KINDS[kind].sign} ${numbers}${selected ? ` ${KINDS[kind].words()}` : ""}`;

@@ -8,7 +8,8 @@ import { gettext } from "../base/messages.js";
 export class CommentList {
   /**
    * @param {CommentJSON[]} comments
-   * @param {{go: (comment: CommentJSON) => void, resolve: (comment: CommentJSON) => void}} parts
+   * @param {{go: (comment: CommentJSON) => void, resolve: (comment: CommentJSON) => void,
+   *          ordinal: (frame: number) => number}} parts
    */
   constructor(comments, parts) {
     this._parts = parts;
@@ -28,7 +29,7 @@ export class CommentList {
 
   /** @param {CommentJSON} comment */
   _row(comment) {
-    const { go, resolve } = this._parts;
+    const { go, resolve, ordinal } = this._parts;
     const answers = (comment.answers ?? []).map(({ role, text }) => {
       const who = role === "worker" ? gettext("Worker") : gettext("Reviewer");
       return element("p", { className: "answer" }, `${who}: ${text}`);
@@ -36,7 +37,7 @@ export class CommentList {
     return element(
       "li",
       { className: comment.resolved ? "resolved" : "" },
-      element("button", { type: "button", className: "where", onclick: () => go(comment) }, where(comment)),
+      element("button", { type: "button", className: "where", onclick: () => go(comment) }, where(comment, ordinal)),
       element("span", {}, comment.text),
       ...answers,
       element(
@@ -48,9 +49,9 @@ export class CommentList {
   }
 }
 
-/** @param {CommentJSON} comment */
-export function where({ frame, person }) {
+/** @param {CommentJSON} comment @param {(frame: number) => number} ordinal */
+function where({ frame, person }, ordinal) {
   if (frame === null) return gettext("Whole batch");
-  if (person === null) return gettext("Frame {frame}", { frame });
-  return gettext("Frame {frame}, person {person}", { frame, person });
+  if (person === null) return gettext("Frame {frame}", { frame: ordinal(frame) });
+  return gettext("Frame {frame}, person {person}", { frame: ordinal(frame), person });
 }

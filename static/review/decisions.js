@@ -69,6 +69,19 @@ export class Decisions {
     if (written) await this._decide("reject", { reason: written.text, category: written.category });
   }
 
+  /** The batch becomes free for others. */
+  async takeBack() {
+    const dialogs = await this._dialogs();
+    const written = await dialogs?.write({
+      title: gettext("Take the batch back"),
+      body: [gettext("Its worker did not come back to it: somebody else may have it.")],
+      label: gettext("Reason"),
+      send: gettext("Take back"),
+      least: 1,
+    });
+    if (written) await this._decide("take_back", { reason: written.text });
+  }
+
   /** Pinned to the frame, and to whoever is chosen. */
   async comment() {
     const { store, server, comments, notices } = this._parts;
@@ -78,7 +91,7 @@ export class Decisions {
     const dialogs = await this._dialogs();
     const written = await dialogs?.write({
       title: gettext("Comment"),
-      body: [pinWords(current, person, place !== null)],
+      body: [pinWords(store.ordinal(current), person, place !== null)],
       label: gettext("What the worker should do"),
       send: gettext("Comment"),
       least: 1,

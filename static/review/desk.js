@@ -33,6 +33,7 @@ import { strip } from "./strip.js";
  * @property {string} home
  * @property {string} desk address of another desk, with 0 for the number
  * @property {string} mend
+ * @property {string} appeal address of its decision; empty unless one is open
  * @property {[string, string][]} categories
  * @property {number} least characters of a rejection's reason
  *
@@ -55,6 +56,7 @@ export function buildDesk(root, parts) {
   const comments = new CommentList(desk.comments, {
     go: (comment) => goTo(comment, store, panes),
     resolve: (comment) => resolve(comment, parts, comments),
+    ordinal: (frame) => store.ordinal(frame),
   });
   const decisions = new Decisions({ ...parts, comments, names: { found: desk.worker } });
   const actions = actionsOf(parts, panes, decisions);
@@ -100,6 +102,7 @@ function actionsOf({ store, desk }, panes, decisions) {
       x: () => decisions.reject(),
       m: () => mend(desk),
     }),
+    ...(desk.state === "returned" && !desk.own && { t: () => decisions.takeBack() }),
     ...((decide || (desk.state === "returned" && !desk.own)) && { c: () => decisions.comment() }),
   };
 }
@@ -172,13 +175,15 @@ function bar({ desk, store }, actions) {
   return element(
     "header",
     { className: "bar" },
-    element("a", { className: "home", href: desk.home }, `← ${desk.batch}, ${desk.worker}`),
+    element("a", { className: "home", href: desk.home, title: desk.worker }, `← ${desk.batch}, ${desk.worker}`),
     store.worst.length ? button("p", gettext("Previous")) : "",
     place,
     store.worst.length ? button("n", gettext("Next difference")) : "",
     element("span", { className: "gap" }),
     "a" in actions ? "" : element("span", { className: "left" }, stateWords(desk)),
+    desk.appeal ? element("a", { className: "home", href: desk.appeal }, gettext("Decide the appeal")) : "",
     button("c", gettext("Comment")),
+    button("t", gettext("Take back")),
     button("m", gettext(desk.mine ? "Go on correcting" : "Correct it myself")),
     button("r", gettext("Return")),
     button("x", gettext("Reject")),
@@ -188,7 +193,7 @@ function bar({ desk, store }, actions) {
 
 /** @param {DeskStore} store */
 function placeWords(store) {
-  const frame = store.current;
+  const frame = store.ordinal(store.current);
   if (!store.worst.length) return gettext("Frame {frame} · no differences", { frame });
   if (store.place < 0) return gettext("Frame {frame} · {count} differences", { frame, count: store.worst.length });
   return gettext("Frame {frame} · difference {at} of {count}, worst first", {

@@ -23,6 +23,19 @@ export class DeskStore extends CompareStore {
     for (const { frame, marks } of frames) this.put(frame, marks);
   }
 
+  /**
+   * The worker's side, which is what is judged.
+   * @param {MarkJSON} mark @override
+   */
+  sideOf(mark) {
+    return mark.found ?? mark.truth;
+  }
+
+  /** A frame as people count them, from 1. @param {number} number */
+  ordinal(number) {
+    return this.inTime.indexOf(number) + 1;
+  }
+
   /** How many differences were not looked at yet. */
   get unseen() {
     return this.worst.length - this.seen.size;

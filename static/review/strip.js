@@ -28,13 +28,14 @@ export function strip(store) {
 
 /** @param {import("./store.js").DeskStore} store @param {import("./store.js").FrameJSON} frame */
 function frameButton(store, { frame, differences, compared }) {
+  const place = gettext("Frame {number}", { number: String(frame).padStart(8, "0") });
   const words = compared ? ngettext("{n} difference", "{n} differences", differences) : gettext("not in the reference");
   const sign = compared ? (differences ? String(differences) : "✓") : "–";
   const className = compared ? (differences ? "frame differs" : "frame clean") : "frame alone";
   return element(
     "button",
-    { type: "button", className, title: words, "data-frame": frame, onclick: () => store.open(frame) },
-    element("small", {}, String(frame)),
+    { type: "button", className, title: `${place}: ${words}`, "data-frame": frame, onclick: () => store.open(frame) },
+    element("small", {}, String(store.ordinal(frame))),
     element("span", {}, sign),
   );
 }

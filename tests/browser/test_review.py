@@ -147,7 +147,7 @@ def test_work_goes_back_with_a_comment_pinned_to_the_difference(
     for _ in range(2):
         reviewer.keyboard.press("n")
     reviewer.keyboard.press("c")
-    expect(reviewer.get_by_role("dialog")).to_contain_text("Frame 10, person 5")
+    expect(reviewer.get_by_role("dialog")).to_contain_text("Frame 3, person 5")
     reviewer.keyboard.type("Nobody stands here.")
     reviewer.keyboard.press("Control+Enter")
     expect(reviewer.locator(".comments li")).to_contain_text("Nobody stands here.")

@@ -58,11 +58,16 @@ def desk(request: StaffRequest, slug: str, pk: int, name: str | None = None) -> 
             "home": address(scope),
             "desk": address(scope, "desk", 0),  # of another one, with its number for 0
             "mend": address(scope, "mend", pk),
+            "appeal": address(scope, "appeal", pk) if waits_for_appeal(told) else "",
             "categories": [[value, str(label)] for value, label in Category.choices],
             "least": needs.least_letters(assignment),
         },
     }
     return render(request, "review/desk.html", context)
+
+
+def waits_for_appeal(told: dict[str, Any]) -> bool:
+    return bool(told["appeal"]) and told["appeal"]["outcome"] == Appeal.Outcome.OPEN
 
 
 @require_POST

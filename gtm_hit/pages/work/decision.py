@@ -10,6 +10,7 @@ from django.utils.translation import gettext_lazy
 from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods
 
+from gtm_hit.models import Assignment, Comment
 from gtm_hit.ops.review import needs
 from gtm_hit.ops.review.comments import threads
 from gtm_hit.ops.review.decision import told
@@ -48,11 +49,18 @@ def decision(request: HttpRequest, token: str) -> HttpResponse:
         "assignment": assignment,
         "dataset": assignment.batch.dataset,
         "decision": told(assignment),
-        "comments": threads(assignment),
+        "comments": counted(assignment),
         "form": form,
         "problem": problem,
     }
     return render(request, "work/decision.html", context, status=409 if problem else 200)
+
+
+def counted(assignment: Assignment) -> list[tuple[int, Comment]]:
+    """The remarks, each with its frame as the workbench counts them, from 1; 0 for those about everything."""
+    numbers = list(assignment.batch.frames.order_by("number").values_list("number", flat=True))
+    places = {number: place for place, number in enumerate(numbers, start=1)}
+    return [(places.get(one.frame.number, 0) if one.frame else 0, one) for one in threads(assignment)]
 
 
 urlpatterns = [path("annotate/<str:token>/decision/", decision, name="work-decision")]

@@ -18,7 +18,9 @@ export function commentItems(comments, { scene, store }, pane) {
       const position = (comment.person === null ? null : store.person(comment.person)?.position) ?? comment.position;
       const point = position === null ? null : pane.view.point(scene.metres(position));
       if (!point) return [];
-      return [item(comment, pane.transform.toPane(point.x, point.y))];
+      const { x, y } = pane.transform.toPane(point.x, point.y);
+      // From above there is no foot to stand over: beside the person.
+      return [item(comment, pane.view.index === null ? { x: x + ABOVE + 4, y: y + ABOVE } : { x, y })];
     });
 }
 
