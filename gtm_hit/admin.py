@@ -26,7 +26,9 @@ from gtm_hit.models import (
     Job,
     Layer,
     LayerFrame,
+    Mend,
     Release,
+    ReviewChoice,
     Save,
     Transition,
     Worker,
@@ -241,6 +243,23 @@ class AppealAdmin(LookOnlyAdmin):
     list_filter = ["outcome"]
     list_select_related = ["assignment__batch__dataset", "assignment__worker", "decided_by"]
     search_fields = ["=assignment__id"]
+    date_hierarchy = "created_at"
+
+
+@admin.register(ReviewChoice)
+class ReviewChoiceAdmin(LookOnlyAdmin):
+    list_display = ["assignment", "chosen", "why", "suspicion", "created_at"]
+    list_filter = ["chosen", "why"]
+    list_select_related = ["assignment__batch__dataset", "assignment__worker"]
+    search_fields = ["=assignment__id"]
+    date_hierarchy = "created_at"
+
+
+@admin.register(Mend)
+class MendAdmin(LookOnlyAdmin):
+    list_display = ["assignment", "layer", "user", "created_at", "accepted_at"]
+    list_select_related = ["assignment__batch__dataset", "assignment__worker", "layer", "user"]
+    search_fields = ["=assignment__id", "layer__name"]
     date_hierarchy = "created_at"
 
 
