@@ -9,7 +9,7 @@ from rcssmin import cssmin
 from rjsmin import jsmin
 from whitenoise.storage import CompressedManifestStaticFilesStorage
 
-OURS = {"base", "compare", "geometry", "saving", "site", "tables", "truth", "views", "workbench"}
+OURS = {"base", "compare", "geometry", "review", "saving", "site", "tables", "truth", "views", "workbench"}
 # As Django writes its patterns of imports; it has none for modules that are resolved now and imported later.
 RESOLVED = (
     "*.js",

@@ -12,11 +12,13 @@ from django.http import HttpRequest
 from gtm_hit.models import (
     Annotation,
     ApiToken,
+    Appeal,
     Assignment,
     Attempt,
     Batch,
     Calibration,
     Camera,
+    Comment,
     Dataset,
     EntryLink,
     Frame,
@@ -26,13 +28,16 @@ from gtm_hit.models import (
     Layer,
     LayerFrame,
     Membership,
+    Mend,
     MoneyEntry,
     OutboxRow,
     PlatformAccount,
     Release,
+    ReviewChoice,
     RoleChange,
     Save,
     Submission,
+    Transition,
     WorkClock,
     Worker,
 )
@@ -221,6 +226,49 @@ class AssignmentAdmin(admin.ModelAdmin):
 
     def has_delete_permission(self, request: HttpRequest, obj: Any = None) -> bool:
         return False
+
+
+@admin.register(Transition)
+class TransitionAdmin(LookOnlyAdmin):
+    list_display = ["assignment", "number", "action", "from_state", "to_state", "user", "worker", "at"]
+    list_filter = ["action", "to_state", "category"]
+    list_select_related = ["assignment__batch__dataset", "assignment__worker", "user", "worker"]
+    search_fields = ["=assignment__id", "user__username", "worker__pseudonym"]
+    date_hierarchy = "at"
+
+
+@admin.register(Comment)
+class CommentAdmin(LookOnlyAdmin):
+    list_display = ["assignment", "frame", "person", "text", "user", "worker", "created_at", "resolved_at"]
+    list_select_related = ["assignment__batch__dataset", "assignment__worker", "frame", "user", "worker"]
+    search_fields = ["=assignment__id", "text"]
+    date_hierarchy = "created_at"
+
+
+@admin.register(Appeal)
+class AppealAdmin(LookOnlyAdmin):
+    list_display = ["assignment", "outcome", "created_at", "decided_by", "decided_at"]
+    list_filter = ["outcome"]
+    list_select_related = ["assignment__batch__dataset", "assignment__worker", "decided_by"]
+    search_fields = ["=assignment__id"]
+    date_hierarchy = "created_at"
+
+
+@admin.register(ReviewChoice)
+class ReviewChoiceAdmin(LookOnlyAdmin):
+    list_display = ["assignment", "chosen", "why", "suspicion", "created_at"]
+    list_filter = ["chosen", "why"]
+    list_select_related = ["assignment__batch__dataset", "assignment__worker"]
+    search_fields = ["=assignment__id"]
+    date_hierarchy = "created_at"
+
+
+@admin.register(Mend)
+class MendAdmin(LookOnlyAdmin):
+    list_display = ["assignment", "layer", "user", "created_at", "accepted_at"]
+    list_select_related = ["assignment__batch__dataset", "assignment__worker", "layer", "user"]
+    search_fields = ["=assignment__id", "layer__name"]
+    date_hierarchy = "created_at"
 
 
 @admin.register(Job)

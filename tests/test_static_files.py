@@ -13,7 +13,10 @@ import pytest
 
 from tests.conftest import REPOSITORY
 
-OURS = ("base/", "compare/", "geometry/", "saving/", "site/", "tables/", "truth/", "views/", "workbench/")
+OURS = (
+    *("base/", "compare/", "geometry/", "review/", "saving/", "site/", "tables/", "truth/", "views/"),
+    "workbench/",
+)
 IMPORT = re.compile(r"""(?:from|import|import\.meta\.resolve)\s*\(?["'](\.[^"']+)["']""")
 
 

@@ -22,8 +22,10 @@ MAY_IMPORT: dict[str, set[str]] = {
     "workbench/people": {"base", "saving", "truth", "views", "workbench/keys"},
     "workbench/frames": {"base", "truth", "saving", "views", "workbench/keys"},
     "workbench/warnings": {"base", "truth", "views"},
+    "workbench/comments": {"base", "truth", "views"},
     "workbench/tutorial": {"base", "views", "workbench/keys"},
     "compare": {"base", "tables", "truth", "views"},
+    "review": {"base", "compare", "tables", "truth", "views"},
     "site": {"base"},
 }
 ABOVE = "workbench"  # builds the page from all of its rooms

@@ -7,14 +7,14 @@ from django.views.decorators.gzip import gzip_page
 from drf_spectacular.views import SpectacularAPIView
 
 # Importing it tells drf-spectacular about the tokens.
-from gtm_hit.api import calibration, jobs, outbox, pay, platform, releases, roles, stitching, work
+from gtm_hit.api import calibration, jobs, outbox, pay, platform, releases, review, roles, stitching, work
 from gtm_hit.api.common import schema  # noqa: F401
 from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.common.docs import DocsView
 from gtm_hit.api.common.missing import MissingView
 from gtm_hit.api.datasets import importing, listing, videos
 from gtm_hit.api.quality import comparing, statistics
-from gtm_hit.api.workbench import frames, tutorial
+from gtm_hit.api.workbench import decision, frames, tutorial
 from gtm_hit.api.workbench.grids import GridView
 from gtm_hit.api.workbench.images import ImageView
 from gtm_hit.api.workbench.places import IN_LAYER, layer_start_place
@@ -33,6 +33,10 @@ assignment = [
     path("frames/<int:number>/history/", frames.HistoryView.as_view()),
     path("rectangles/", RectanglesView.as_view()),
     path("submit/", SubmitView.as_view()),
+    path("comments/", decision.AssignmentComments.as_view()),
+    path("comments/<int:pk>/", decision.AssignmentComment.as_view()),
+    path("decision/", decision.AssignmentDecision.as_view()),
+    path("appeal/", decision.AssignmentAppeal.as_view()),
 ]
 START: dict[str, Any] = {**IN_LAYER, "find": layer_start_place}
 layer = [
@@ -111,6 +115,13 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("stitching/conflicts/<int:pk>/decide/", stitching.DecideConflict.as_view()),
     path("stitching/conflicts/<int:pk>/undo/", stitching.UndoConflict.as_view()),
     path("campaigns/<str:name>/", include(campaign_pay)),
+    path("reviews/", review.Reviews.as_view()),
+    path("reviews/<int:pk>/", review.OneReview.as_view()),
+    path("reviews/<int:pk>/differences/", gzip_page(review.ReviewDifferences.as_view())),
+    path("reviews/<int:pk>/decision/", review.Decision.as_view()),
+    path("reviews/<int:pk>/comments/", review.ReviewComments.as_view()),
+    path("reviews/<int:pk>/comments/<int:comment>/", review.ReviewComment.as_view()),
+    path("reviews/<int:pk>/mend/", review.ReviewMend.as_view()),
     path("releases/", releases.Releases.as_view()),
     path("releases/<int:number>/", releases.OneRelease.as_view()),
     path("releases/<int:number>/download/", releases.DownloadRelease.as_view()),

@@ -11,6 +11,7 @@ from gtm_hit.models.job import Job
 from gtm_hit.models.money import MoneyEntry, WorkClock
 from gtm_hit.models.outbox import HookEvent, OutboxRow, PlatformAccount, Submission
 from gtm_hit.models.release import Release
+from gtm_hit.models.review import Appeal, Category, Comment, Mend, ReviewChoice, Transition
 from gtm_hit.models.role import Membership, Role, RoleChange
 from gtm_hit.models.stitching import StitchConflict, StitchedFrame, Stitching, StitchingRun
 from gtm_hit.models.work import Assignment, Batch, Worker
@@ -18,6 +19,7 @@ from gtm_hit.models.work import Assignment, Batch, Worker
 __all__ = [
     "Annotation",
     "ApiToken",
+    "Appeal",
     "AppendOnlyError",
     "Assignment",
     "Attempt",
@@ -27,6 +29,8 @@ __all__ = [
     "Campaign",
     "CampaignLink",
     "CampaignWorker",
+    "Category",
+    "Comment",
     "Dataset",
     "EntryLink",
     "Frame",
@@ -36,10 +40,12 @@ __all__ = [
     "Layer",
     "LayerFrame",
     "Membership",
+    "Mend",
     "MoneyEntry",
     "OutboxRow",
     "PlatformAccount",
     "Release",
+    "ReviewChoice",
     "Role",
     "RoleChange",
     "Save",
@@ -48,6 +54,7 @@ __all__ = [
     "Stitching",
     "StitchingRun",
     "Submission",
+    "Transition",
     "WorkClock",
     "Worker",
 ]

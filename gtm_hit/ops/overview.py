@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
-from django.db.models import Case, Count, IntegerField, OuterRef, QuerySet, Subquery, When
-from django.db.models.functions import Coalesce
+from django.db.models import Case, Count, OuterRef, QuerySet, Subquery, When
 from django.utils import timezone
 
 from gtm_hit.models import (
@@ -24,6 +22,7 @@ from gtm_hit.models import (
     LayerFrame,
 )
 from gtm_hit.ops.access.roles import Somebody, datasets_of, layers_of
+from gtm_hit.ops.counting import correlated_count as _count
 
 
 @dataclass(frozen=True)
@@ -211,11 +210,3 @@ def _summaries(found: QuerySet[Dataset], layers: QuerySet[Layer]) -> list[Datase
         )
         for row in rows
     ]
-
-
-def _count(related: QuerySet[Any], group: str, counted: str, *, distinct: bool = False) -> Coalesce:
-    """A correlated count, so that counting two relations in one query multiplies nothing."""
-    counts = (
-        related.order_by().values(group).annotate(number=Count(counted, distinct=distinct)).values("number")
-    )
-    return Coalesce(Subquery(counts, output_field=IntegerField()), 0)

@@ -3,13 +3,17 @@ from __future__ import annotations
 from django.urls import URLPattern, URLResolver
 
 from gtm_hit.pages import api_tokens, calibration, home, hooks, jobs, pay, people, platform, releases
-from gtm_hit.pages.campaigns import links as campaign_links, listing as campaigns, rules as campaign_rules, workers as campaign_workers
+from gtm_hit.pages.campaigns import links as campaign_links
+from gtm_hit.pages.campaigns import listing as campaigns
+from gtm_hit.pages.campaigns import rules as campaign_rules
+from gtm_hit.pages.campaigns import workers as campaign_workers
 from gtm_hit.pages.datasets import importing as dataset_imports
 from gtm_hit.pages.datasets import listing as datasets
 from gtm_hit.pages.layers import importing as annotation_imports
 from gtm_hit.pages.layers import listing as layers
 from gtm_hit.pages.quality import comparing, statistics, text_files
-from gtm_hit.pages.work import batches, invitation, my_work, workplace
+from gtm_hit.pages.review import desk, waiting
+from gtm_hit.pages.work import batches, decision, invitation, my_work, workplace
 
 urlpatterns: list[URLPattern | URLResolver] = [
     *home.urlpatterns,
@@ -36,4 +40,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *workplace.urlpatterns,
     *my_work.urlpatterns,
     *invitation.urlpatterns,
+    *waiting.urlpatterns,
+    *desk.urlpatterns,
+    *decision.urlpatterns,
 ]

@@ -2,7 +2,6 @@ import { element } from "../base/dom.js";
 import { gettext } from "../base/messages.js";
 import { boxBounds, drawBox, drawFoot, drawLabel, drawPath, labelWidth } from "../views/marks.js";
 import { HALO, WHITE, YELLOW } from "../views/styles.js";
-import { sideOf } from "./store.js";
 
 /**
  * @typedef {import("../geometry/lens.js").XY} XY
@@ -18,7 +17,7 @@ import { sideOf } from "./store.js";
  */
 
 /**
- * How the four kinds of people look: colour, line and sign all say the same. Colours lie on photographs, so they
+ * How the kinds of people look: colour, line and sign all say the same. Colours lie on photographs, so they
  * are the same in the dark and the light theme.
  * @type {Record<Kind, {sign: string, words: () => string, look: KindLook}>}
  */
@@ -26,10 +25,11 @@ export const KINDS = {
   missed: { sign: "×", words: () => gettext("missed"), look: { colour: "#ff8f86", width: 2, dash: [7, 4] } },
   extra: { sign: "+", words: () => gettext("extra"), look: { colour: YELLOW, width: 2, dash: [2, 3] } },
   swapped: { sign: "◆", words: () => gettext("swapped"), look: { colour: "#d3a3ff", width: 2.5, dash: [] } },
+  moved: { sign: "→", words: () => gettext("moved"), look: { colour: "#ffb26b", width: 2, dash: [] } },
   matched: { sign: "○", words: () => gettext("matched"), look: { colour: WHITE, width: 1, dash: [] } },
 };
 
-/** Mistakes first. @type {Kind[]} */
+/** Mistakes first; who is called moved is the desk's to say. @type {import("./store.js").Counted[]} */
 export const ORDER = ["missed", "extra", "swapped", "matched"];
 
 const PLAIN = { box: 1, label: 1 };
@@ -50,7 +50,8 @@ export function markItem(pane, mark, selected, labels) {
   if (!shown.length) return null;
   const look = { ...KINDS[mark.kind].look, selected };
   const feet = shown.map(({ side, point }) => ({ ...transform.toPane(point.x, point.y), side }));
-  const box = view.index === null ? around(feet) : paneBox(shown[0].shape, transform);
+  const boxed = shown.find(({ side }) => side === mark.shown) ?? shown[0];
+  const box = view.index === null ? around(feet) : paneBox(boxed.shape, transform);
   const label = labels || selected ? labelOf(mark, selected) : "";
   return {
     id: mark.key,
@@ -72,7 +73,7 @@ export function markItem(pane, mark, selected, labels) {
  */
 function labelOf(mark, selected) {
   const { kind } = mark;
-  const number = sideOf(mark).person;
+  const number = mark.shown.person;
   if (kind === "matched") return String(number);
   const numbers = kind === "swapped" ? `${mark.before}→${mark.found.person}` : number;
   return `${KINDS[kind].sign} ${numbers}${selected ? ` ${KINDS[kind].words()}` : ""}`;

@@ -1,7 +1,6 @@
 import { element } from "../base/dom.js";
 import { gettext, ngettext } from "../base/messages.js";
 import { KINDS, ORDER, signOf } from "./marks.js";
-import { sideOf } from "./store.js";
 
 /**
  * The side panel: what the frame's line of the table says, and everybody in it, mistakes first.
@@ -33,9 +32,11 @@ export class MarksPanel {
 
   show() {
     const { line } = this._store;
+    /** @type {import("./store.js").Kind[]} */
+    const kinds = line.moved === undefined ? ORDER : [...ORDER.slice(0, -1), "moved", "matched"];
     this._counts.replaceChildren(
-      ...ORDER.map((kind) => {
-        const count = kind === "matched" ? line.matched - line.swapped : line[kind];
+      ...kinds.map((kind) => {
+        const count = kind === "matched" ? line.matched - line.swapped : (line[kind] ?? 0);
         return element("span", {}, signOf(kind), ` ${count} ${KINDS[kind].words()}`);
       }),
     );
@@ -49,19 +50,22 @@ export class MarksPanel {
       "li",
       { role: "option", "data-kind": mark.kind, "data-key": mark.key, onclick: () => this._select(mark.key) },
       signOf(mark.kind),
-      element("span", { className: "number" }, String(sideOf(mark).person)),
+      element("span", { className: "number" }, String(mark.shown.person)),
       element("span", { className: "state" }, this._told(mark)),
     );
   }
 
   /** @param {Mark} mark */
-  _told({ kind, truth, found, before, distance }) {
+  _told({ kind, truth, found, before, distance, shown }) {
     const centimetres = Math.round((distance ?? 0) * 1000) / 10;
     if (kind === "missed") return gettext("missed");
     if (kind === "extra") return gettext("extra");
+    if (distance === null) return ""; // there is nothing to compare with
     const away = ngettext("{n} cm off", "{n} cm off", centimetres);
     if (kind === "swapped") return gettext("was {before}, now {now}, {away}", { before, now: found.person, away });
-    return truth.person === found.person ? away : gettext("found as {now}, {away}", { now: found.person, away });
+    if (truth.person === found.person) return away;
+    if (shown === found) return gettext("{number} in the reference, {away}", { number: truth.person, away });
+    return gettext("found as {now}, {away}", { now: found.person, away });
   }
 
   _showSelection() {

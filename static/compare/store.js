@@ -3,16 +3,18 @@ import { Emitter } from "../base/emitter.js";
 /**
  * Which frame is looked at, who is in it, and who is chosen. Frames are known in two orders: worst first, and in
  * time. Emits `frame`, `marks` and `selection` {after}.
- * @typedef {"missed"|"extra"|"swapped"|"matched"} Kind
+ * @typedef {"missed"|"extra"|"swapped"|"matched"} Counted
+ * @typedef {Counted|"moved"} Kind somebody moved is matched, but far off
  * @typedef {{person: number, position: number, height: number|null, radius: number|null}} Side of a mark
- * @typedef {{frame: number, truth: number, found: number} & Record<Kind, number>} Line of the table of frames;
+ * @typedef {{frame: number, truth: number, found: number, moved?: number} & Record<Counted, number>} Line of the table of frames;
  *   swapped people are among the matched
  * @typedef {{distance: number|null, before: number|null}} Told metres, and the number somebody swapped had before
  * @typedef {Told & {kind: "missed", truth: Side, found: null}} Missed
  * @typedef {Told & {kind: "extra", truth: null, found: Side}} Extra
- * @typedef {Told & {kind: "swapped"|"matched", truth: Side, found: Side}} Pair
+ * @typedef {Told & {kind: "swapped"|"moved"|"matched", truth: Side, found: Side}} Pair
  * @typedef {Missed|Extra|Pair} MarkJSON as the server sends it
- * @typedef {MarkJSON & {key: number, main: Side}} Mark `main`: one of its sides, numbered by its key
+ * @typedef {MarkJSON & {key: number, main: Side, shown: Side}} Mark `shown`: the side whose box and number are
+ *   shown; `main`: the same, numbered by the mark's key
  * @typedef {{frames: ReadonlySet<number>}} Change never said: nobody moves here
  * @extends {Emitter<{frame: void, marks: void, selection: {after: number|null}, change: Change}>}
  */
@@ -59,8 +61,19 @@ export class CompareStore extends Emitter {
 
   /** @param {number} number @param {MarkJSON[]} marks */
   put(number, marks) {
-    this._marks.set(number, marks.map(prepared));
+    this._marks.set(
+      number,
+      marks.map((mark, index) => prepared(mark, index, this.sideOf(mark))),
+    );
     if (number === this.current) this.emit("marks");
+  }
+
+  /**
+   * The truth where there is one.
+   * @param {MarkJSON} mark @returns {Side}
+   */
+  sideOf(mark) {
+    return mark.kind === "extra" ? mark.found : mark.truth;
   }
 
   /** @param {number} number */
@@ -89,19 +102,10 @@ export class CompareStore extends Emitter {
 }
 
 /**
- * The truth where there is one.
- * @param {MarkJSON} mark
+ * Drawing, picking and zooming take a mark by one of its sides.
+ * @param {MarkJSON} mark @param {number} index @param {Side} shown @returns {Mark}
  */
-export function sideOf(mark) {
-  return mark.kind === "extra" ? mark.found : mark.truth;
-}
-
-/**
- * Drawing, picking and zooming take a mark by one of its sides: the truth where there is one.
- * @param {MarkJSON} mark @param {number} index @returns {Mark}
- */
-function prepared(mark, index) {
+function prepared(mark, index, shown) {
   const key = index + 1;
-  const main = { ...sideOf(mark), person: key };
-  return { ...mark, key, main };
+  return { ...mark, key, shown, main: { ...shown, person: key } };
 }

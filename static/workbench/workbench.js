@@ -56,7 +56,7 @@ import { WarningsPanel } from "./warnings/warnings_panel.js";
 
 /**
  * Builds the page over a session inside `root` and connects its parts. What few need, and nobody without the
- * server, is fetched when it is needed.
+ * server, is fetched when it is needed. Parts that only some pages name are told when everything else is built.
  * @param {HTMLElement} root
  * @param {Session} session
  * @param {{mode: string, home: string}} page `home`: the address one came from
@@ -108,6 +108,7 @@ export async function buildWorkbench(root, session, { mode, home }) {
   showPaths(session.store, page);
   showFilmstrip(timeline, notices, { ...session, navigation, panes, settings });
   if (mode !== "tutorial") addForWork(panel, session, page, { actions, perform, identity, heads, guard });
+  document.dispatchEvent(new CustomEvent("built", { detail: { panel, ...session, ...page } }));
   watch(session, panes, notices);
   navigation.carryInto(store.current);
   if (mode === "tutorial") await startTutorial(panel, { ...session, panes, navigation, home });

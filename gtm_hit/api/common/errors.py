@@ -22,6 +22,7 @@ from gtm_hit.formats.problems import MOST_PROBLEMS
 from gtm_hit.ops.files.full_disk import disk_full
 from gtm_hit.ops.frames.rules import InvalidFrame
 from gtm_hit.ops.frames.saving import SaveIdUsed, StaleSave, UnknownRevision
+from gtm_hit.ops.review.refusals import NotAllowed, ReviewRefused, WrongState
 from gtm_hit.ops.tutorial import lesson
 from gtm_hit.ops.work import assignments
 
@@ -69,6 +70,12 @@ def domain_answer(error: Exception) -> Response | None:
         case assignments.Unfinished():
             message = _("Some frames of the batch are not done yet.")
             return answer(409, "unfinished", message, {"frames": error.frames})
+        case WrongState():
+            return answer(409, error.code, str(error))
+        case NotAllowed():
+            return answer(403, error.code, str(error))
+        case ReviewRefused():
+            return answer(400, error.code, str(error), [{"place": "", "reason": str(error)}])
         case lesson.StepsMissing():
             message = _("Some steps of the tutorial are not done yet.")
             return answer(409, "unfinished", message, {"steps": error.steps})

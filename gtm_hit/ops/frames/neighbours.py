@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from gtm_hit.models import Annotation, Assignment, Batch, Frame
 from gtm_hit.ops.frames.row import Row
 from gtm_hit.ops.frames.saving import rows_by_frame
+from gtm_hit.ops.review.mending import layer_that_counts
 
 # Frames on each side: as many as a movement is read from.
 REACH = 4
@@ -37,7 +38,7 @@ def neighbours(batch: Batch) -> Neighbours:
 
 def accepted_beside(batch: Batch) -> dict[int, Assignment]:
     """By batch number; where several copies were accepted, the one of this batch's own copy."""
-    found = Assignment.objects.select_related("batch").filter(
+    found = Assignment.objects.select_related("batch", "mend").filter(
         batch__dataset=batch.dataset_id,
         batch__campaign=batch.campaign_id,
         batch__number__in=[batch.number - 1, batch.number + 1],
@@ -53,6 +54,6 @@ def nearest_frames(batch: Batch, assignment: Assignment | None, order: str) -> l
         return []
     beside = Frame.objects.filter(batches=assignment.batch_id).exclude(batches=batch.pk)
     frames = list(beside.order_by(order)[:REACH])
-    annotations = Annotation.objects.filter(layer=assignment.layer_id)
+    annotations = Annotation.objects.filter(layer=layer_that_counts(assignment))
     people = rows_by_frame(annotations, [frame.pk for frame in frames])
     return [NeighbourFrame(frame.number, people[frame.pk]) for frame in frames]

@@ -11,25 +11,27 @@ from typing import Any
 
 from django.conf import settings
 from django.db import IntegrityError, transaction
-from django.db.models import Count, Exists, F, OuterRef, Q, QuerySet, Sum
+from django.db.models import Count, Exists, OuterRef, Q, QuerySet, Sum
 from django.utils import timezone
-from django.utils.translation import gettext as _
 
 from gtm_hit.models import Assignment, Batch, Campaign, Frame, Layer, LayerFrame, Worker
-from gtm_hit.models.work import completion_code
 from gtm_hit.ops.campaigns import entry_rules
-from gtm_hit.ops.errors import OperationError
+from gtm_hit.ops.review.machine import Action
+from gtm_hit.ops.review.transitions import expire_all, transition
 from gtm_hit.ops.work import unsaved_leases
 from gtm_hit.ops.work.pools import Place, Pool, pool_of
+from gtm_hit.ops.work.readiness import AssignmentError as AssignmentError
+from gtm_hit.ops.work.readiness import ReadOnly as ReadOnly
+from gtm_hit.ops.work.readiness import Unfinished as Unfinished
+from gtm_hit.ops.work.readiness import done_frames as done_frames
+from gtm_hit.ops.work.readiness import explained as explained
+from gtm_hit.ops.work.readiness import read_only_reason as read_only_reason
+from gtm_hit.ops.work.readiness import unfinished_frames as unfinished_frames
 
 State = Assignment.State
 
 # Each failed try means that somebody else got the batch, so tries end when the batches do.
 MAX_TRIES = 200
-
-
-class AssignmentError(OperationError):
-    pass
 
 
 class NoFreeBatch(AssignmentError):
@@ -42,22 +44,6 @@ class BusyElsewhere(AssignmentError):
     def __init__(self, assignment: Assignment) -> None:
         super().__init__(f"{assignment.worker} still works on {assignment.batch}")
         self.assignment = assignment
-
-
-class ReadOnly(AssignmentError):
-    """The layer may not be changed now; `reason` is `submitted`, `expired`, `not_author` or `protected`."""
-
-    def __init__(self, reason: str) -> None:
-        super().__init__(reason)
-        self.reason = reason
-
-
-class Unfinished(AssignmentError):
-    """Frames of the batch that are not done on the server's record."""
-
-    def __init__(self, frames: list[int]) -> None:
-        super().__init__(f"frames not done: {frames}")
-        self.frames = frames
 
 
 def lease_end(campaign: Campaign | None) -> datetime:
@@ -80,8 +66,7 @@ def expire_leases(now: datetime | None = None) -> int:
     with transaction.atomic():
         # Whoever else is ending one of these leases at this moment must not be waited for: two who
         # wait for each other are a deadlock.
-        ended = list(overdue.select_for_update(no_key=True, skip_locked=True).values_list("pk", flat=True))
-        return Assignment.objects.filter(pk__in=ended).update(state=State.EXPIRED) if ended else 0
+        return expire_all(list(overdue.select_for_update(no_key=True, skip_locked=True)))
 
 
 def running() -> QuerySet[Assignment]:
@@ -198,19 +183,17 @@ def regained(worker: Worker, pool: Pool, address: str) -> Assignment | None:
         return None
     # The same lock as for a free batch: whoever is about to take it is let through first.
     Batch.objects.select_for_update(no_key=True).get(pk=own.batch_id)
-    changes: dict[str, Any] = {
-        "state": State.LEASED,
-        "leased_at": timezone.now(),
-        "expires_at": lease_end(pool.campaign),
-    }
+    changes: dict[str, Any] = {"leased_at": timezone.now(), "expires_at": lease_end(pool.campaign)}
     if not LayerFrame.objects.filter(layer=own.layer_id, revision__gt=0).exists():
         unsaved_leases.require_room(worker, pool.dataset, address)
-        changes |= {"expires_at": first_lease_end(pool.campaign), "takes": F("takes") + 1}
+        changes |= {"expires_at": first_lease_end(pool.campaign), "takes": own.takes + 1}
         changes["address"] = unsaved_leases.kept(address)
-    if not own_expired(worker, pool).filter(pk=own.pk).update(**changes):
+    own = Assignment.objects.select_for_update(no_key=True).get(pk=own.pk)
+    if not own_expired(worker, pool).filter(pk=own.pk).exists():
         return None
-    own.refresh_from_db()
-    return own
+    if own.state == State.LEASED:
+        own = transition(own, Action.EXPIRE, None)
+    return transition(own, Action.RENEW, worker, changes=changes)
 
 
 def lease(batch: Batch, worker: Worker, address: str, submission: str = "") -> Assignment:
@@ -244,26 +227,6 @@ def require_editable(layer: Layer, assignment: Assignment | None, worker: Worker
         raise ReadOnly(reason)
 
 
-def read_only_reason(assignment: Assignment) -> str:
-    """Why the assignment's layer may not be changed now; empty when it may."""
-    if assignment.editable:
-        return ""
-    return "expired" if assignment.state in {State.LEASED, State.EXPIRED} else "submitted"
-
-
-def explained(reason: str) -> str:
-    """A `read_only_reason` in plain words; empty for empty."""
-    texts = {
-        "submitted": _("This batch is submitted; it can be looked at, not changed."),
-        "expired": _("The time for this batch has run out. Open your start page to continue with it."),
-        "protected": _(
-            "Imported, hidden and released layers are changed by managers and maintainers, at the browser."
-        ),
-        "not_author": _("A worker's annotations are changed by that worker only."),
-    }
-    return texts.get(reason, reason)
-
-
 def extend(assignment: Assignment) -> None:
     """Activity keeps a lease alive."""
     end = lease_end(assignment.batch.campaign)
@@ -278,26 +241,7 @@ def submit(assignment: Assignment) -> Assignment:
             return locked
         if reason := read_only_reason(locked):
             raise ReadOnly(reason)
-        if missing := unfinished_frames(locked):
-            raise Unfinished(missing)
-        locked.state = State.SUBMITTED
-        locked.submitted_at = timezone.now()
-        locked.code = locked.code or completion_code()
-        locked.save(update_fields=["state", "submitted_at", "code"])
-        return locked
-
-
-def done_frames(assignment: Assignment) -> list[int]:
-    """Numbers of the batch's frames that are done on the server's record."""
-    done = Frame.objects.filter(
-        batches=assignment.batch_id, layer_frames__layer=assignment.layer_id, layer_frames__done=True
-    )
-    return list(done.order_by("number").values_list("number", flat=True))
-
-
-def unfinished_frames(assignment: Assignment) -> list[int]:
-    frames = Frame.objects.filter(batches=assignment.batch_id).exclude(number__in=done_frames(assignment))
-    return list(frames.order_by("number").values_list("number", flat=True))
+        return transition(locked, Action.SUBMIT, locked.worker)
 
 
 def summary(assignment: Assignment) -> dict[str, Any]:

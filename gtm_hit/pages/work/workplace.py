@@ -15,12 +15,14 @@ from django.views.decorators.csrf import csrf_exempt, csrf_protect
 from django.views.decorators.http import require_http_methods, require_POST, require_safe
 
 from gtm_hit.crowd.entry import is_preview, worker_id
-from gtm_hit.models import Layer, Worker
-from gtm_hit.ops.access.roles import SEES, layers_of
 from gtm_hit.crowd.platform import Outcome, Stay
 from gtm_hit.crowd.platforms import platform_of
-from gtm_hit.ops.campaigns import entry_rules, links as campaign_links
+from gtm_hit.models import Worker
+from gtm_hit.ops.access.roles import SEES, layers_of
+from gtm_hit.ops.campaigns import entry_rules
+from gtm_hit.ops.campaigns import links as campaign_links
 from gtm_hit.ops.frames import parts
+from gtm_hit.ops.review import comments
 from gtm_hit.ops.tutorial import lesson
 from gtm_hit.ops.work import assignments, limits, links, unsaved_leases, workers
 from gtm_hit.pages.common import browsers
@@ -156,6 +158,7 @@ def start_page(request: HttpRequest, seat: links.Seat, token: str) -> HttpRespon
         "done": len(assignments.done_frames(current)) if current else 0,
         "total": current.batch.frames.count() if current else 0,
         "finished": finished,
+        "decisions": [(one, links.assignment_token(one)) for one in finished],
         "summary": assignments.summary(finished[0]) if finished and not current else None,
         "work_left": current is not None or left,
         "one_more": current is not None and left and assignments.room_for_another(seat.worker, seat.pool),
@@ -218,7 +221,9 @@ def annotate(request: HttpRequest, token: str) -> HttpResponse:
         page = render(request, "work/expired.html", {"token": seat_token, "assignment": task.assignment})
         return embedding.framed(page, campaign)
     home_url = reverse("work-home", args=[seat_token])
-    page = workbench(request, api=api("assignment/"), token=token, mode="assignment", home=home_url)
+    told = "true" if comments.exist(task.assignment) else ""
+    where = {"api": api("assignment/"), "token": token, "home": home_url}
+    page = workbench(request, mode="assignment", comments=told, **where)
     return embedding.framed(page, campaign)
 
 

@@ -8,8 +8,8 @@ from django.contrib.auth.models import User
 from gtm_hit.models import Assignment, Campaign, OutboxRow, Submission, Worker
 from gtm_hit.ops.outbox import handover, planning
 from gtm_hit.ops.pay import table
-from tests.paid_campaign import assign, become
 from tests.ops.outbox.conftest import REASON, decide, states
+from tests.paid_campaign import assign, become
 
 State = Assignment.State
 EXPORT = (

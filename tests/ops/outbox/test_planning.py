@@ -9,8 +9,8 @@ from gtm_hit.models import Assignment, Campaign, MoneyEntry, OutboxRow, Worker
 from gtm_hit.ops.outbox import planning, rows
 from gtm_hit.ops.outbox.platform import Refused
 from gtm_hit.ops.pay import ledger, table
-from tests.paid_campaign import assign, become, make_campaign
 from tests.ops.outbox.conftest import REASON, decide, states
+from tests.paid_campaign import assign, become, make_campaign
 from tests.work_scene import make_dataset, make_worker
 
 State = Assignment.State

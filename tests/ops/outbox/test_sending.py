@@ -14,8 +14,8 @@ from gtm_hit.models import Assignment, Campaign, MoneyEntry, OutboxRow, Platform
 from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.outbox import accounts, planning, reconciling, rows, sending
 from gtm_hit.ops.pay import table
-from tests.paid_campaign import assign
 from tests.ops.outbox.conftest import REASON, decide, hurry, send, states
+from tests.paid_campaign import assign
 from tests.prolific_server import Prolific
 
 State = Assignment.State

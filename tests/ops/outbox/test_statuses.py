@@ -13,8 +13,8 @@ from gtm_hit.models import Assignment, Campaign, OutboxRow, Submission, Worker
 from gtm_hit.ops.outbox import statuses
 from gtm_hit.ops.outbox.statuses import FINAL, Told, newest, observe, take_in
 from gtm_hit.ops.pay import table
-from tests.paid_campaign import assign, become
 from tests.ops.outbox.conftest import REASON, decide
+from tests.paid_campaign import assign, become
 from tests.prolific_server import Prolific
 
 State = Assignment.State
