@@ -17,6 +17,7 @@ from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.layers import job as annotation_job
 from gtm_hit.ops.layers import unfinished
 from gtm_hit.ops.releases import releasing
+from gtm_hit.ops.scores import computing
 from gtm_hit.ops.work import assignments
 
 OPERATIONS: dict[str, queue.Operation] = {
@@ -55,6 +56,16 @@ def remove_unused_pictures() -> None:
 @shared_task
 def expire_leases() -> None:
     assignments.expire_leases(timezone.now())
+
+
+@shared_task
+def score_assignment(assignment_id: int) -> None:
+    computing.score_assignment(assignment_id)
+
+
+@shared_task
+def recompute_scores() -> None:
+    computing.recompute_all()
 
 
 @worker_ready.connect

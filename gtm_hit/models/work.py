@@ -101,6 +101,8 @@ class Batch(models.Model):
         ]
 
     def __str__(self) -> str:
+        if self.qualification_id is not None:
+            return f"{self.dataset} qualification"
         return f"{self.dataset} batch {self.number}" + (f"/{self.copy}" if self.copy > 1 else "")
 
 

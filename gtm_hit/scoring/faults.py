@@ -154,6 +154,21 @@ def planted(frames: Frames, faults: Sequence[Fault]) -> dict[int, Positions]:
     return shown
 
 
+def unplanted(shown: Frames, faults: Sequence[Fault]) -> dict[int, Positions]:
+    """What was there before the faults were planted: the way back of `planted`."""
+    right = {number: dict(people) for number, people in shown.items()}
+    for fault in faults:
+        if fault.kind is FaultKind.SWAPPED:
+            for number in right:
+                if number >= fault.frame:
+                    _exchange(right[number], fault.person, fault.other)
+        elif fault.right is None:
+            right[fault.frame].pop(fault.person, None)
+        else:
+            right[fault.frame][fault.person] = fault.right
+    return right
+
+
 def repaired(fault: Fault, right: Frames, now: Frames, grid: Grid) -> bool:
     """Whether the worker's people `now` stand where they should; `right` is what was true before planting."""
     people = now.get(fault.frame, {})

@@ -16,6 +16,7 @@ from gtm_hit.scoring.faults import (
     plant,
     planted,
     repaired,
+    unplanted,
 )
 from gtm_hit.scoring.undoing import changed, changes
 from tests.scoring.people import GRID, moved, walking
@@ -65,6 +66,11 @@ def test_a_worker_who_is_5_cm_off_everywhere_repaired_all(seed: int) -> None:
         for number, people in walking().items()
     }
     assert all(repaired(fault, walking(), found, GRID) for fault in made(seed))
+
+
+@given(st.integers(0, 10_000))
+def test_what_was_there_before_is_known_from_what_was_shown(seed: int) -> None:
+    assert unplanted(planted(walking(), made(seed)), made(seed)) == walking()
 
 
 @given(st.integers(0, 10_000))

@@ -15,7 +15,7 @@ from django.db.models import Count, Exists, F, OuterRef, Q, QuerySet, Sum
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
-from gtm_hit.models import Assignment, Batch, Dataset, Frame, Layer, LayerFrame, Worker
+from gtm_hit.models import Assignment, Batch, Dataset, Frame, Layer, Save, Worker
 from gtm_hit.models.work import completion_code
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.work import unsaved_leases
@@ -141,6 +141,7 @@ def own_expired(worker: Worker, dataset: Dataset) -> QuerySet[Assignment]:
     """The worker's assignments that ran out and whose batches are still free, newest first."""
     mine = Assignment.objects.filter(worker=worker, batch__dataset=dataset)
     over = mine.filter(state__in=[State.EXPIRED, State.LEASED], expires_at__lte=timezone.now())
+    over = over.filter(batch__qualification=None)
     return over.filter(~holding(OuterRef("batch"))).select_related("batch")
 
 
@@ -152,6 +153,7 @@ def work_left(worker: Worker, dataset: Dataset) -> bool:
 def finished(worker: Worker, dataset: Dataset) -> QuerySet[Assignment]:
     """What the worker submitted, newest first."""
     mine = Assignment.objects.filter(worker=worker, batch__dataset=dataset, submitted_at__isnull=False)
+    mine = mine.filter(batch__qualification=None)
     return mine.select_related("batch__dataset", "layer").order_by("-submitted_at")
 
 
@@ -163,7 +165,7 @@ def regained(worker: Worker, dataset: Dataset, address: str) -> Assignment | Non
     # The same lock as for a free batch: whoever is about to take it is let through first.
     Batch.objects.select_for_update(no_key=True).get(pk=own.batch_id)
     changes: dict[str, Any] = {"state": State.LEASED, "leased_at": timezone.now(), "expires_at": lease_end()}
-    if not LayerFrame.objects.filter(layer=own.layer_id, revision__gt=0).exists():
+    if not Save.objects.filter(layer_frame__layer=own.layer_id, worker__isnull=False).exists():
         unsaved_leases.require_room(worker, dataset, address)
         changes |= {"expires_at": first_lease_end(), "takes": F("takes") + 1}
         changes["address"] = unsaved_leases.kept(address)
@@ -177,7 +179,18 @@ def lease(batch: Batch, worker: Worker, address: str) -> Assignment:
     name = f"batch-{batch.number:04d}-{worker.pseudonym}"
     layer = Layer.objects.create(dataset_id=batch.dataset_id, name=name, kind=Layer.Kind.ASSIGNMENT)
     end, origin = first_lease_end(), unsaved_leases.kept(address)
-    return Assignment.objects.create(batch=batch, worker=worker, layer=layer, expires_at=end, address=origin)
+    made = Assignment.objects.create(batch=batch, worker=worker, layer=layer, expires_at=end, address=origin)
+    begun(made)
+    return made
+
+
+def begun(assignment: Assignment) -> None:
+    if assignment.batch.campaign_id is None:
+        return
+    # Whoever fills assignments reads and writes frames, which know of assignments.
+    from gtm_hit.ops.gold import starting
+
+    starting.prepare(assignment)
 
 
 def locked_for_layer(layer: Layer) -> Assignment | None:
@@ -233,7 +246,16 @@ def submit(assignment: Assignment) -> Assignment:
         locked.submitted_at = timezone.now()
         locked.code = locked.code or completion_code()
         locked.save(update_fields=["state", "submitted_at", "code"])
+        submitted(locked)
         return locked
+
+
+def submitted(assignment: Assignment) -> None:
+    if assignment.batch.campaign_id is None and assignment.batch.qualification_id is None:
+        return
+    from gtm_hit.ops.gold import submission
+
+    submission.submitted(assignment)
 
 
 def done_frames(assignment: Assignment) -> list[int]:
