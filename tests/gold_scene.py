@@ -1,4 +1,4 @@
-"""A campaign in the square with a hidden truth: eight people walk through 20 frames, in two batches of ten."""
+"""A campaign in the square with a hidden truth: eight people walk through 20 frames, two batches of ten."""
 
 from __future__ import annotations
 

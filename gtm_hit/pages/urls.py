@@ -2,13 +2,13 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-from gtm_hit.pages import api_tokens, calibration, home, jobs, releases
+from gtm_hit.pages import api_tokens, calibration, gold, home, jobs, qualifications, releases, scores
 from gtm_hit.pages.datasets import importing as dataset_imports
 from gtm_hit.pages.datasets import listing as datasets
 from gtm_hit.pages.layers import importing as annotation_imports
 from gtm_hit.pages.layers import listing as layers
 from gtm_hit.pages.quality import comparing, statistics, text_files
-from gtm_hit.pages.work import batches, workplace
+from gtm_hit.pages.work import batches, qualifying, workplace
 
 urlpatterns: list[URLPattern | URLResolver] = [
     *home.urlpatterns,
@@ -25,4 +25,8 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *calibration.urlpatterns,
     *api_tokens.urlpatterns,
     *workplace.urlpatterns,
+    *qualifying.urlpatterns,
+    *qualifications.urlpatterns,
+    *gold.urlpatterns,
+    *scores.urlpatterns,
 ]

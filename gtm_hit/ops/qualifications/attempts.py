@@ -164,3 +164,40 @@ def failed_marks(qualification: Qualification, score: TruthScore) -> list[str]:
         "min_idf1": score.idf1 >= qualification.min_idf1,
     }
     return [name for name, fine in reached.items() if not fine]
+
+
+@dataclass(frozen=True)
+class Mark:
+    """One pass mark beside what was reached, in words."""
+
+    label: str
+    reached: str
+    asked: str
+    fine: bool
+
+
+def marks(attempt: QualificationAttempt) -> list[Mark]:
+    """By the marks of today; whether the try passed was decided by those of its time."""
+    one, result = attempt.qualification, attempt.result
+    shares = [
+        (_("people found"), result["recall"], one.min_recall),
+        (_("boxes with a person in them"), result["precision"], one.min_precision),
+        (_("people under one number"), result["idf1"], one.min_idf1),
+    ]
+    distances = [
+        (_("usual distance from the feet"), result["median"], one.max_median),
+        (_("19 of 20 are nearer than"), result["p95"], one.max_p95),
+    ]
+    return [
+        *(
+            Mark(label, f"{100 * got:.0f} %", f"≥ {100 * least:.0f} %", got >= least)
+            for label, got, least in shares
+        ),
+        *(distance_mark(*line, bool(result["truth"])) for line in distances),
+    ]
+
+
+def distance_mark(label: str, got: float | None, most: float, anybody: bool) -> Mark:
+    reached = "–" if got is None else f"{100 * got:.0f} cm"
+    fine = not anybody or (got is not None and got <= most)
+    return Mark(label, reached, f"≤ {100 * most:.0f} cm", fine)

@@ -19,6 +19,7 @@ from gtm_hit.models import (
     GoldFrame,
     Layer,
     Qualification,
+    QualificationAttempt,
     RequiredQualification,
 )
 from gtm_hit.ops.errors import OperationError
@@ -139,3 +140,9 @@ def qualifications(dataset: Dataset) -> QuerySet[Qualification, Any]:
         )
         .order_by("name")
     )
+
+
+def tries(qualification: Qualification) -> QuerySet[QualificationAttempt]:
+    """Newest first, with the worker at hand."""
+    mine = QualificationAttempt.objects.filter(qualification=qualification)
+    return mine.select_related("worker", "assignment__layer").order_by("-started_at", "-pk")

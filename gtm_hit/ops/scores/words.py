@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from django.utils.translation import gettext as _
@@ -88,3 +89,24 @@ def signal_in_words(reason: Mapping[str, Any]) -> str:
 
 def percent(part: float, whole: float) -> int:
     return round(100 * part / whole) if whole else 0
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A score as pages show it: whole points, and why."""
+
+    score: int
+    low: int
+    high: int
+    assignments: int
+    lines: list[str]
+
+    @property
+    def width(self) -> int:
+        return max(1, self.high - self.low)
+
+
+def shown(row: WorkerScore | None) -> Shown | None:
+    if row is None:
+        return None
+    return Shown(round(row.score), round(row.low), round(row.high), row.assignments, of_score(row))

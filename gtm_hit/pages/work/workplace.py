@@ -16,6 +16,7 @@ from django.views.decorators.http import require_http_methods, require_POST, req
 from gtm_hit.crowd.entry import is_preview, worker_id
 from gtm_hit.models import Layer, Worker
 from gtm_hit.ops.frames import parts
+from gtm_hit.ops.qualifications import requirements
 from gtm_hit.ops.tutorial import lesson
 from gtm_hit.ops.work import assignments, limits, links, unsaved_leases, workers
 from gtm_hit.pages.common import browsers
@@ -123,6 +124,7 @@ def home(request: HttpRequest, token: str) -> HttpResponse:
         "summary": assignments.summary(finished[0]) if finished and not current else None,
         "work_left": current is not None or assignments.work_left(seat.worker, seat.dataset),
         "tutorial": lesson.available(),
+        "qualifications": requirements.offered(seat.dataset).exists(),
     }
     return render(request, "work/home.html", context)
 
