@@ -33,11 +33,11 @@ PARTS = (
     Part("found", 4, 0.25, 0.5),  # people of the truth found, and nobody invented
     Part("placed", 2, 0.25, 0.3),
     Part("identity", 1, 0.1, 0.5),
-    Part("faults", 4, 1.0, 0.0),
+    Part("faults", 6, 1.0, 0.0),
     Part("agreement", 2, 0.05, 0.4),
     Part("plausible", 1, 0.1, 0.8),
     Part("care", 2, 1.0, 0.0),
-    Part("finishing", 1, 1.0, 0.0),
+    Part("finishing", 2, 1.0, 0.0),
 )
 
 

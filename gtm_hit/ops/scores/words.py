@@ -11,11 +11,15 @@ from django.utils.translation import gettext as _
 from gtm_hit.models import AssignmentScore, WorkerScore
 
 SAID = 0.5  # points; what costs less is not worth a sentence
+MOST_SAID = 4
 
 
 def of_score(row: WorkerScore) -> list[str]:
     """What the score is made of, what cost most first."""
-    told = [one for one in row.reasons if one["lost"] >= SAID and one["good"] + one["bad"] > 0]
+    told = [
+        one for one in row.reasons if one["lost"] >= SAID and one["bad"] >= 0.05 * (one["good"] + one["bad"])
+    ]
+    told = [one for one in told if one["bad"] > 0][:MOST_SAID]
     unknown = [one for one in row.reasons if one["good"] + one["bad"] == 0]
     lines = [part_in_words(one) for one in told] or [_("Nothing speaks against the work.")]
     if unknown:
