@@ -73,7 +73,7 @@ class BatchCounts:
 
 
 def batch_counts(dataset: Dataset) -> BatchCounts:
-    held = Assignment.objects.filter(batch__dataset=dataset, state__in=Assignment.HOLDING)
+    held = Assignment.objects.filter(batch__in=dataset.batches.all(), state__in=Assignment.HOLDING)
     states = dict(
         # A lease that ran out holds nothing, though its row says so until the clock comes by.
         held.exclude(state=Assignment.State.LEASED, expires_at__lte=timezone.now())
@@ -88,7 +88,7 @@ def batch_counts(dataset: Dataset) -> BatchCounts:
         leased=states.get("leased", 0) + states.get("returned", 0),
         submitted=states.get("submitted", 0),
         accepted=states.get("accepted", 0),
-        frames_without=dataset.frames.filter(batches__isnull=True).count(),
+        frames_without=dataset.frames.exclude(batches__in=dataset.batches.all()).count(),
     )
 
 
@@ -147,7 +147,7 @@ def assignments(dataset: Dataset) -> QuerySet[Assignment]:
     done = LayerFrame.objects.filter(layer=OuterRef("layer"), done=True)
     annotations = Annotation.objects.filter(layer=OuterRef("layer"))
     return (
-        Assignment.objects.filter(batch__dataset=dataset)
+        Assignment.objects.filter(batch__dataset=dataset, batch__qualification=None)
         .select_related("batch", "worker", "layer")
         .annotate(
             frame_count=_count(frames, "batch", "pk"),

@@ -8,10 +8,11 @@ import pytest
 from django.utils import timezone
 
 from gtm_hit.models import Assignment, Batch, Campaign, Qualification, QualificationGrant, Worker
+from gtm_hit.ops import overview
 from gtm_hit.ops.qualifications import attempts, grants, managing
 from gtm_hit.ops.qualifications.managing import Order, PassMarks, QualificationError
 from gtm_hit.ops.qualifications.requirements import missing_qualifications, offered
-from gtm_hit.ops.work import assignments
+from gtm_hit.ops.work import assignments, batches
 from tests.gold_scene import hand_in, make_scene, truth_of_square
 from tests.scoring.people import moved
 from tests.work_scene import make_dataset, make_layer, make_worker
@@ -208,3 +209,15 @@ def test_asking_for_one_that_is_not_there_is_refused(campaign: Campaign, basics:
         managing.require(campaign, ["basics", "other"])
     managing.require(campaign, [])
     assert not campaign.required_qualifications.exists()
+
+
+def test_frames_of_a_try_are_still_in_no_batch(
+    campaign: Campaign, basics: Qualification, alice: Worker
+) -> None:
+    dataset = campaign.dataset
+    campaign.batches.all().delete()
+    hand_in(attempts.begin(basics, alice), truth_of_square())
+    counts = overview.batch_counts(dataset)
+    assert (counts.batches, counts.free, counts.submitted, counts.frames_without) == (0, 0, 0, 20)
+    assert batches.make_batches(dataset) == 2
+    assert not overview.assignments(dataset).exists()
