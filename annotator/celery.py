@@ -4,6 +4,7 @@ import os
 from typing import Any
 
 from celery import Celery
+from celery.schedules import crontab
 from celery.signals import worker_init, worker_ready
 from django.conf import settings
 from kombu.transport import TRANSPORT_ALIASES
@@ -41,6 +42,11 @@ app.conf.beat_schedule = {
         "task": "gtm_hit.tasks.resume_outboxes",
         "schedule": 60.0,
         "options": {"expires": 59},
+    },
+    "recompute-scores": {
+        "task": "gtm_hit.tasks.recompute_scores",
+        "schedule": crontab(hour=3, minute=20),
+        "options": {"expires": 3600},
     },
     "expire-leases": {
         "task": "gtm_hit.tasks.expire_leases",

@@ -21,6 +21,7 @@ from gtm_hit.ops.layers import unfinished
 from gtm_hit.ops.outbox import sending
 from gtm_hit.ops.releases import releasing
 from gtm_hit.ops.stitching import running as stitching
+from gtm_hit.ops.scores import computing
 from gtm_hit.ops.work import assignments
 
 OPERATIONS: dict[str, queue.Operation] = {
@@ -66,6 +67,13 @@ def expire_leases() -> None:
 @shared_task
 def resume_outboxes() -> None:
     sending.resume(timezone.now())
+def score_assignment(assignment_id: int) -> None:
+    computing.score_assignment(assignment_id)
+
+
+@shared_task
+def recompute_scores() -> None:
+    computing.recompute_all()
 
 
 @worker_ready.connect

@@ -8,15 +8,16 @@ from pathlib import Path
 import pytest
 
 APP = Path(__file__).resolve().parent.parent / "gtm_hit"
-PURE = {"geometry", "formats", "metrics", "demo", "stitching"}
+PURE = {"geometry", "formats", "metrics", "scoring", "demo", "stitching"}
 MAY_IMPORT = {
     "geometry": set(),
     "formats": {"geometry"},
     "metrics": {"geometry", "formats"},
+    "scoring": {"geometry", "metrics"},
     "demo": {"geometry", "formats"},
     "stitching": {"metrics"},
     "models": {"geometry"},
-    "ops": {"geometry", "formats", "metrics", "demo", "stitching", "models"},
+    "ops": {"geometry", "formats", "metrics", "scoring", "demo", "stitching", "models"},
     "crowd": {"models", "ops"},
     "tasks": {"models", "ops", "crowd"},
     "api": {"geometry", "formats", "metrics", "models", "ops", "crowd"},

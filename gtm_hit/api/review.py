@@ -48,11 +48,12 @@ class ReviewView(StaffView):
 
 
 def assignment_or_404(slug: str, pk: int) -> Assignment:
-    rows = queue.described(Assignment.objects.filter(batch__dataset__slug=slug, pk=pk))
-    found = rows.select_related("layer__dataset").first()
-    if found is None:
+    found = Assignment.objects.filter(batch__dataset__slug=slug, batch__qualification=None, pk=pk)
+    rows = queue.described(found)
+    one = rows.select_related("layer__dataset").first()
+    if one is None:
         raise Http404
-    return found
+    return one
 
 
 class ReviewsQuery(serializers.Serializer[Any]):

@@ -7,7 +7,7 @@ from django.views.decorators.gzip import gzip_page
 from drf_spectacular.views import SpectacularAPIView
 
 # Importing it tells drf-spectacular about the tokens.
-from gtm_hit.api import calibration, jobs, outbox, pay, platform, releases, review, roles, stitching, work
+from gtm_hit.api import calibration, gold, jobs, outbox, pay, platform, qualifications, releases, review, roles, scores, stitching, work
 from gtm_hit.api.common import schema  # noqa: F401
 from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.common.docs import DocsView
@@ -126,6 +126,16 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("releases/<int:number>/", releases.OneRelease.as_view()),
     path("releases/<int:number>/download/", releases.DownloadRelease.as_view()),
     path("releases/<int:number>/files/<str:name>", releases.ReleaseFile.as_view()),
+]
+one_dataset += [
+    path("qualifications/", qualifications.Qualifications.as_view()),
+    path("qualifications/<str:name>/grants/", qualifications.Grants.as_view()),
+    path("qualifications/<str:name>/tries/", qualifications.Tries.as_view()),
+    path("campaigns/<str:name>/gold/", gold.Gold.as_view()),
+    path("campaigns/<str:name>/planted-faults/", gold.PlantedFaults.as_view()),
+    path("campaigns/<str:name>/required-qualifications/", gold.RequiredQualifications.as_view()),
+    path("campaigns/<str:name>/scores/", scores.Scores.as_view()),
+    path("campaigns/<str:name>/suspicion/", scores.SuspiciousAssignments.as_view()),
 ]
 scripts: list[URLPattern | URLResolver] = [
     path("datasets/", listing.Datasets.as_view()),

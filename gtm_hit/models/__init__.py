@@ -7,6 +7,7 @@ from gtm_hit.models.calibration import Calibration
 from gtm_hit.models.campaign import Campaign, CampaignWorker
 from gtm_hit.models.campaign_link import CampaignLink
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
+from gtm_hit.models.gold import GoldFrame, PlantedFault, Planting
 from gtm_hit.models.job import Job
 from gtm_hit.models.money import MoneyEntry, WorkClock
 from gtm_hit.models.outbox import HookEvent, OutboxRow, PlatformAccount, Submission
@@ -14,6 +15,13 @@ from gtm_hit.models.release import Release
 from gtm_hit.models.review import Appeal, Category, Comment, Mend, ReviewChoice, Transition
 from gtm_hit.models.role import Membership, Role, RoleChange
 from gtm_hit.models.stitching import StitchConflict, StitchedFrame, Stitching, StitchingRun
+from gtm_hit.models.qualification import (
+    Qualification,
+    QualificationAttempt,
+    QualificationGrant,
+    RequiredQualification,
+)
+from gtm_hit.models.score import AssignmentScore, WorkerScore
 from gtm_hit.models.work import Assignment, Batch, Worker
 
 __all__ = [
@@ -22,6 +30,7 @@ __all__ = [
     "Appeal",
     "AppendOnlyError",
     "Assignment",
+    "AssignmentScore",
     "Attempt",
     "Batch",
     "Calibration",
@@ -35,6 +44,7 @@ __all__ = [
     "EntryLink",
     "Frame",
     "HookEvent",
+    "GoldFrame",
     "Image",
     "Job",
     "Layer",
@@ -48,6 +58,12 @@ __all__ = [
     "ReviewChoice",
     "Role",
     "RoleChange",
+    "PlantedFault",
+    "Planting",
+    "Qualification",
+    "QualificationAttempt",
+    "QualificationGrant",
+    "RequiredQualification",
     "Save",
     "StitchConflict",
     "StitchedFrame",
@@ -57,4 +73,5 @@ __all__ = [
     "Transition",
     "WorkClock",
     "Worker",
+    "WorkerScore",
 ]

@@ -66,6 +66,13 @@ class Worker(models.Model):
         return self.pseudonym
 
 
+class OrdinaryBatches(models.Manager["Batch"]):
+    """Without those of qualifications, which are handed out to one worker for one try."""
+
+    def get_queryset(self) -> models.QuerySet[Batch]:
+        return super().get_queryset().filter(qualification__isnull=True)
+
+
 class Batch(models.Model):
     """Consecutive frames to be annotated together. Several copies give several opinions."""
 
@@ -78,10 +85,21 @@ class Batch(models.Model):
         related_name="batches",
         help_text="empty: made for the dataset itself",
     )
+    qualification = models.ForeignKey(
+        "gtm_hit.Qualification",
+        null=True,
+        blank=True,
+        on_delete=models.PROTECT,
+        related_name="batches",
+        help_text="a try of it; its number is 0",
+    )
     number = models.PositiveIntegerField(help_text="position along the dataset, from 1")
     copy = models.PositiveSmallIntegerField(default=1, help_text="the n-th independent annotation")
     frames = models.ManyToManyField(Frame, related_name="batches")
     created_at = models.DateTimeField(auto_now_add=True)
+
+    objects = OrdinaryBatches()
+    with_qualifications: models.Manager[Batch] = models.Manager()
 
     class Meta:
         ordering = ["dataset", "copy", "number"]
@@ -89,7 +107,7 @@ class Batch(models.Model):
         constraints = [
             models.UniqueConstraint(
                 fields=["dataset", "number", "copy"],
-                condition=Q(campaign__isnull=True),
+                condition=Q(campaign__isnull=True, qualification__isnull=True),
                 name="batch_number_once",
             ),
             models.UniqueConstraint(
@@ -98,6 +116,8 @@ class Batch(models.Model):
         ]
 
     def __str__(self) -> str:
+        if self.qualification_id is not None:
+            return f"{self.dataset} qualification"
         return f"{self.dataset} batch {self.number}" + (f"/{self.copy}" if self.copy > 1 else "")
 
 

@@ -157,7 +157,7 @@ def assignments(dataset: Dataset) -> QuerySet[Assignment]:
     done = LayerFrame.objects.filter(layer=OuterRef("layer"), done=True)
     annotations = Annotation.objects.filter(layer=OuterRef("layer"))
     return (
-        Assignment.objects.filter(batch__dataset=dataset)
+        Assignment.objects.filter(batch__dataset=dataset, batch__qualification=None)
         .select_related("batch", "worker", "layer")
         .annotate(
             frame_count=_count(frames, "batch", "pk"),

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-from gtm_hit.pages import api_tokens, calibration, home, hooks, jobs, pay, people, platform, releases
+from gtm_hit.pages import api_tokens, calibration, gold, home, hooks, jobs, pay, people, platform, qualifications, releases, scores
 from gtm_hit.pages.campaigns import links as campaign_links
 from gtm_hit.pages.campaigns import listing as campaigns
 from gtm_hit.pages.campaigns import rules as campaign_rules
@@ -13,7 +13,7 @@ from gtm_hit.pages.layers import importing as annotation_imports
 from gtm_hit.pages.layers import listing as layers
 from gtm_hit.pages.quality import comparing, statistics, text_files
 from gtm_hit.pages.review import desk, waiting
-from gtm_hit.pages.work import batches, decision, invitation, my_work, workplace
+from gtm_hit.pages.work import batches, decision, invitation, my_work, qualifying, workplace
 
 urlpatterns: list[URLPattern | URLResolver] = [
     *home.urlpatterns,
@@ -43,4 +43,8 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *waiting.urlpatterns,
     *desk.urlpatterns,
     *decision.urlpatterns,
+    *qualifying.urlpatterns,
+    *qualifications.urlpatterns,
+    *gold.urlpatterns,
+    *scores.urlpatterns,
 ]

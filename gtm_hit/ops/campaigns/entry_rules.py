@@ -8,6 +8,7 @@ from django.utils.translation import gettext as _
 
 from gtm_hit.models import Assignment, Campaign, CampaignWorker, Worker
 from gtm_hit.ops.errors import OperationError
+from gtm_hit.ops.qualifications.requirements import missing_qualifications
 
 State = Assignment.State
 Standing = CampaignWorker.Standing
@@ -75,8 +76,3 @@ def limit_refusal(campaign: Campaign, worker: Worker) -> Refusal | None:
 def taken(campaign: Campaign, worker: Worker) -> int:
     rows = Assignment.objects.filter(worker=worker, batch__campaign=campaign)
     return rows.filter(state__in=COUNTED).count()
-
-
-def missing_qualifications(campaign: Campaign, worker: Worker) -> list[str]:
-    """Names of the qualifications a campaign asks for and the worker lacks."""
-    return []

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.table import RectangleTable
 from gtm_hit.models import Annotation, Dataset, Layer, LayerFrame
+from gtm_hit.ops.gold.withdraw import without_faults
 from gtm_hit.ops.ground.rectangles import annotation_rectangles
 
 FRAMES_PER_CHUNK = 250
+COLUMNS = ("person", "position", "height", "radius", "state", "origin")
 METRE_DIGITS = 6  # micrometres: enough to hide the last bits of floating point, not a position
 
 Ids = NDArray[np.int64]
@@ -53,6 +55,8 @@ class FrameReader:
         self.dataset = dataset
         self.cameras = cameras
         self.table = table
+        # Errors that were planted on purpose never leave the house.
+        self.honest = without_faults(layer)
 
     def count(self) -> int:
         return self._saved().count()
@@ -75,8 +79,13 @@ class FrameReader:
         rows = list(
             Annotation.objects.filter(layer=self.layer, frame__in=list(numbers))
             .order_by()
-            .values_list("frame_id", "person", "position", "height", "radius", "state", "origin")
+            .values_list("frame_id", *COLUMNS)
         )
+        rows = [row for row in rows if row[0] not in self.honest] + [
+            (frame, *(getattr(row, name) for name in COLUMNS))
+            for frame in numbers.keys() & self.honest.keys()
+            for row in self.honest[frame]
+        ]
         columns: list[Any] = list(zip(*rows, strict=True)) or [()] * 7
         frames = np.fromiter(map(numbers.__getitem__, columns[0]), np.int64, len(rows))
         persons = np.array(columns[1], dtype=np.int64)

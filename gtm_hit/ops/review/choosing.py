@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from django.db.models import Max
 from django.db.transaction import atomic
@@ -35,14 +35,24 @@ class Suspicion:
     reasons: tuple[str, ...] = ()
 
 
+def by_scores(assignment: Assignment) -> Suspicion | None:
+    if assignment.batch.campaign_id is None:
+        return None
+    # Scores read frames, which know of assignments, which know of reviews.
+    from gtm_hit.ops.scores import suspicion, words
+
+    found = suspicion.suspicion(assignment)
+    return Suspicion(found.value, tuple(words.signal_in_words(asdict(signal)) for signal in found.signals))
+
+
 # Each tells what it thinks of a submission, or None; the most suspicious one counts.
-SOURCES: list[Callable[[Assignment], Suspicion | None]] = []
+SOURCES: list[Callable[[Assignment], Suspicion | None]] = [by_scores]
 
 
 def after_submission(happened: Happened) -> Following | None:
     """An effect: what nobody is going to look at is accepted at once, and written down as that."""
-    if happened.action is not Action.SUBMIT:
-        return None
+    if happened.action is not Action.SUBMIT or happened.assignment.batch.qualification_id is not None:
+        return None  # a try is judged by known truth
     choice = choose(happened.assignment)
     return None if choice.chosen else Following(Action.ACCEPT_UNSEEN, "not chosen for review")
 

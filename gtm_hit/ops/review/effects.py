@@ -4,12 +4,49 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from django.contrib.auth.models import User
+
+from gtm_hit.models import Assignment
 from gtm_hit.ops.review import choosing
 from gtm_hit.ops.review.happened import Following, Happened
+from gtm_hit.ops.review.machine import DECISIONS, Action
 
 Effect = Callable[[Happened], Following | None]
 
-EFFECTS: list[Effect] = [choosing.after_submission]
+
+def take_out_faults(happened: Happened) -> None:
+    """What was planted in submitted work leaves it, and a try is judged."""
+    if happened.action is not Action.SUBMIT:
+        return
+    batch = happened.assignment.batch
+    if batch.campaign_id is None and batch.qualification_id is None:
+        return
+    # Gold reads and writes frames, which know of assignments, which know of reviews.
+    from gtm_hit.ops.gold import submission
+
+    submission.submitted(happened.assignment)
+
+
+def tell_platform(happened: Happened) -> None:
+    """Plan what the worker's platform is to be told about a decision."""
+    if happened.action not in {*DECISIONS, Action.ACCEPT_UNSEEN} or happened.action is Action.UPHOLD:
+        return
+    if happened.assignment.state == Assignment.State.EXPIRED:
+        return  # taken back: whoever gets the batch next is decided about
+    from gtm_hit.ops.outbox import planning
+
+    row = happened.transition
+    planning.plan_decision(
+        happened.assignment,
+        happened.assignment.state,
+        message=row.reason,
+        category=row.category,
+        by=happened.by if isinstance(happened.by, User) else None,
+    )
+
+
+# Faults go before anybody looks at the work.
+EFFECTS: list[Effect] = [take_out_faults, choosing.after_submission, tell_platform]
 
 
 def following(happened: Happened) -> Iterator[Following]:

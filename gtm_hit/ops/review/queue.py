@@ -17,7 +17,7 @@ LOOKED_THROUGH = 100  # to find the next that is not the reviewer's own
 
 @dataclass(frozen=True)
 class Scope:
-    """A campaign's work, or with no campaign that of the whole dataset."""
+    """A campaign's work, or with no campaign that of the whole dataset; never tries for a qualification."""
 
     dataset: Dataset
     campaign: Campaign | None = None
@@ -25,7 +25,7 @@ class Scope:
     def within(self, prefix: str = "") -> Q:
         if self.campaign is not None:
             return Q(**{f"{prefix}batch__campaign": self.campaign})
-        return Q(**{f"{prefix}batch__dataset": self.dataset})
+        return Q(**{f"{prefix}batch__dataset": self.dataset, f"{prefix}batch__qualification": None})
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from django.db import IntegrityError, transaction
 from django.db.models import Count, Exists, OuterRef, Q, QuerySet, Sum
 from django.utils import timezone
 
-from gtm_hit.models import Assignment, Batch, Campaign, Frame, Layer, LayerFrame, Worker
+from gtm_hit.models import Assignment, Batch, Campaign, Frame, Layer, Save, Worker
 from gtm_hit.ops.campaigns import entry_rules
 from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.review.transitions import expire_all, transition
@@ -159,6 +159,7 @@ def own_expired(worker: Worker, place: Place) -> QuerySet[Assignment]:
     """The worker's assignments that ran out and whose batches are still free, newest first."""
     mine = pool_of(place).mine(worker)
     over = mine.filter(state__in=[State.EXPIRED, State.LEASED], expires_at__lte=timezone.now())
+    over = over.filter(batch__qualification=None)
     return over.filter(~holding(OuterRef("batch"))).select_related("batch")
 
 
@@ -172,7 +173,7 @@ def work_left(worker: Worker, place: Place) -> bool:
 
 def finished(worker: Worker, place: Place) -> QuerySet[Assignment]:
     """What the worker submitted, newest first."""
-    mine = pool_of(place).mine(worker).filter(submitted_at__isnull=False)
+    mine = pool_of(place).mine(worker).filter(submitted_at__isnull=False, batch__qualification=None)
     return mine.select_related("batch__dataset", "batch__campaign", "layer").order_by("-submitted_at")
 
 
@@ -184,7 +185,7 @@ def regained(worker: Worker, pool: Pool, address: str) -> Assignment | None:
     # The same lock as for a free batch: whoever is about to take it is let through first.
     Batch.objects.select_for_update(no_key=True).get(pk=own.batch_id)
     changes: dict[str, Any] = {"leased_at": timezone.now(), "expires_at": lease_end(pool.campaign)}
-    if not LayerFrame.objects.filter(layer=own.layer_id, revision__gt=0).exists():
+    if not Save.objects.filter(layer_frame__layer=own.layer_id, worker__isnull=False).exists():
         unsaved_leases.require_room(worker, pool.dataset, address)
         changes |= {"expires_at": first_lease_end(pool.campaign), "takes": own.takes + 1}
         changes["address"] = unsaved_leases.kept(address)
@@ -200,7 +201,7 @@ def lease(batch: Batch, worker: Worker, address: str, submission: str = "") -> A
     place = f"{batch.campaign.name}-" if batch.campaign else ""
     name = f"{place}batch-{batch.number:04d}-{worker.pseudonym}"
     layer = Layer.objects.create(dataset_id=batch.dataset_id, name=name, kind=Layer.Kind.ASSIGNMENT)
-    return Assignment.objects.create(
+    made = Assignment.objects.create(
         batch=batch,
         worker=worker,
         layer=layer,
@@ -208,6 +209,17 @@ def lease(batch: Batch, worker: Worker, address: str, submission: str = "") -> A
         address=unsaved_leases.kept(address),
         submission=submission,
     )
+    begun(made)
+    return made
+
+
+def begun(assignment: Assignment) -> None:
+    if assignment.batch.campaign_id is None:
+        return
+    # Whoever fills assignments reads and writes frames, which know of assignments.
+    from gtm_hit.ops.gold import starting
+
+    starting.prepare(assignment)
 
 
 def locked_for_layer(layer: Layer) -> Assignment | None:

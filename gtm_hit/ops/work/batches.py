@@ -46,7 +46,9 @@ def existing(dataset: Dataset) -> tuple[dict[int, list[int]], dict[int, set[int]
         frames_of.setdefault(number, [])
         copies_of.setdefault(number, set()).add(copy)
     first = {number: min(there) for number, there in copies_of.items()}
-    links = Batch.frames.through.objects.filter(batch__dataset=dataset, batch__campaign=None)
+    links = Batch.frames.through.objects.filter(
+        batch__dataset=dataset, batch__campaign=None, batch__qualification=None
+    )
     for number, copy, frame in links.values_list("batch__number", "batch__copy", "frame_id"):
         if copy == first[number]:
             frames_of[number].append(frame)

@@ -12,12 +12,13 @@ from django.conf import settings
 from django.db.models import Exists, OuterRef, Sum
 from django.utils import timezone
 
-from gtm_hit.models import Assignment, Dataset, LayerFrame, Worker
+from gtm_hit.models import Assignment, Dataset, Save, Worker
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.work.digests import digest
 
 REMEMBERED = timedelta(days=1)
-SAVED = Exists(LayerFrame.objects.filter(layer=OuterRef("layer"), revision__gt=0))
+# By the worker: what a batch starts with was saved by nobody.
+SAVED = Exists(Save.objects.filter(layer_frame__layer=OuterRef("layer"), worker__isnull=False))
 
 
 class TooManyUnsaved(OperationError):

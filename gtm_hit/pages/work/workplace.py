@@ -22,6 +22,7 @@ from gtm_hit.ops.access.roles import SEES, layers_of
 from gtm_hit.ops.campaigns import entry_rules
 from gtm_hit.ops.campaigns import links as campaign_links
 from gtm_hit.ops.frames import parts
+from gtm_hit.ops.qualifications import requirements
 from gtm_hit.ops.review import comments
 from gtm_hit.ops.tutorial import lesson
 from gtm_hit.ops.work import assignments, limits, links, unsaved_leases, workers
@@ -165,6 +166,7 @@ def start_page(request: HttpRequest, seat: links.Seat, token: str) -> HttpRespon
         "tutorial": lesson.available(),
         "refusal": entry_rules.refusal(seat.campaign, seat.worker) if seat.campaign else None,
         **leaving.shown(end),
+        "qualifications": requirements.offered(seat.dataset).exists(),
     }
     return render(request, "work/home.html", context)
 

@@ -1,0 +1,1 @@
+"""Known truth and planted faults inside ordinary work."""

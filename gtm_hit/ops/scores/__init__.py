@@ -1,0 +1,1 @@
+"""How good workers and their assignments are, as numbers, with reasons in words."""
