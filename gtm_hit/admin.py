@@ -23,8 +23,8 @@ from gtm_hit.models import (
     Dataset,
     EntryLink,
     Frame,
-    HookEvent,
     GoldFrame,
+    HookEvent,
     Image,
     Job,
     Layer,
@@ -33,16 +33,16 @@ from gtm_hit.models import (
     Mend,
     MoneyEntry,
     OutboxRow,
-    PlatformAccount,
-    Release,
-    ReviewChoice,
-    RoleChange,
     PlantedFault,
     Planting,
+    PlatformAccount,
     Qualification,
     QualificationAttempt,
     QualificationGrant,
+    Release,
     RequiredQualification,
+    ReviewChoice,
+    RoleChange,
     Save,
     Submission,
     Transition,
@@ -315,6 +315,8 @@ class RoleChangeAdmin(LookOnlyAdmin):
     list_filter = ["role", "granted"]
     search_fields = ["username", "dataset", "by"]
     date_hierarchy = "at"
+
+
 @admin.register(Qualification)
 class QualificationAdmin(LookOnlyAdmin):
     list_display = ["name", "dataset", "truth", "frames_per_try", "tries", "closed_at", "created_at"]

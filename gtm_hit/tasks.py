@@ -20,8 +20,8 @@ from gtm_hit.ops.layers import job as annotation_job
 from gtm_hit.ops.layers import unfinished
 from gtm_hit.ops.outbox import sending
 from gtm_hit.ops.releases import releasing
-from gtm_hit.ops.stitching import running as stitching
 from gtm_hit.ops.scores import computing
+from gtm_hit.ops.stitching import running as stitching
 from gtm_hit.ops.work import assignments
 
 OPERATIONS: dict[str, queue.Operation] = {
@@ -67,6 +67,8 @@ def expire_leases() -> None:
 @shared_task
 def resume_outboxes() -> None:
     sending.resume(timezone.now())
+
+
 def score_assignment(assignment_id: int) -> None:
     computing.score_assignment(assignment_id)
 

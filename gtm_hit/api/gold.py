@@ -70,8 +70,8 @@ class RequireSerializer(serializers.Serializer[Any]):
 
 
 class CampaignView(StaffView):
-    read_role: Role | None = Role.MANAGER
-    write_role: Role | None = Role.MANAGER
+    read_role = Role.MANAGER
+    write_role = Role.MANAGER
     write_scope = ApiToken.Scope.WORK
 
 
@@ -90,7 +90,7 @@ class Gold(CampaignView):
     def post(self, request: Request, slug: str, name: str) -> Response:
         campaign = campaign_or_404(slug, name)
         wanted = valid(ChooseSerializer(data=request.data))
-        truth = layer_named(campaign.dataset, wanted["layer"], "layer")
+        truth = layer_named(request, campaign.dataset, wanted["layer"], "layer")
         try:
             frames.choose(campaign, truth, wanted["share"], wanted["seed"])
         except OperationError as error:
@@ -123,7 +123,7 @@ class PlantedFaults(CampaignView):
         campaign = campaign_or_404(slug, name)
         wanted = valid(SettleSerializer(data=request.data))
         given = wanted.pop("starting_layer")
-        layer = layer_named(campaign.dataset, given, "starting_layer") if given else None
+        layer = layer_named(request, campaign.dataset, given, "starting_layer") if given else None
         try:
             planting.settle(campaign, layer, **wanted)
         except OperationError as error:

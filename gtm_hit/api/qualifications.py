@@ -114,7 +114,7 @@ class Qualifications(StaffView):
         dataset = dataset_or_404(slug)
         wanted = valid(NewQualificationSerializer(data=request.data))
         marks = PassMarks(**{name: wanted.pop(name) for name in MARKS})
-        truth = layer_named(dataset, wanted.pop("truth"), "truth")
+        truth = layer_named(request, dataset, wanted.pop("truth"), "truth")
         try:
             made = managing.create(dataset, Order(truth=truth, marks=marks, **wanted), caller(request))
         except QualificationError as error:

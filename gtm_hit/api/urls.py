@@ -7,7 +7,21 @@ from django.views.decorators.gzip import gzip_page
 from drf_spectacular.views import SpectacularAPIView
 
 # Importing it tells drf-spectacular about the tokens.
-from gtm_hit.api import calibration, gold, jobs, outbox, pay, platform, qualifications, releases, review, roles, scores, stitching, work
+from gtm_hit.api import (
+    calibration,
+    gold,
+    jobs,
+    outbox,
+    pay,
+    platform,
+    qualifications,
+    releases,
+    review,
+    roles,
+    scores,
+    stitching,
+    work,
+)
 from gtm_hit.api.common import schema  # noqa: F401
 from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.common.docs import DocsView

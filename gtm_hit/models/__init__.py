@@ -11,17 +11,17 @@ from gtm_hit.models.gold import GoldFrame, PlantedFault, Planting
 from gtm_hit.models.job import Job
 from gtm_hit.models.money import MoneyEntry, WorkClock
 from gtm_hit.models.outbox import HookEvent, OutboxRow, PlatformAccount, Submission
-from gtm_hit.models.release import Release
-from gtm_hit.models.review import Appeal, Category, Comment, Mend, ReviewChoice, Transition
-from gtm_hit.models.role import Membership, Role, RoleChange
-from gtm_hit.models.stitching import StitchConflict, StitchedFrame, Stitching, StitchingRun
 from gtm_hit.models.qualification import (
     Qualification,
     QualificationAttempt,
     QualificationGrant,
     RequiredQualification,
 )
+from gtm_hit.models.release import Release
+from gtm_hit.models.review import Appeal, Category, Comment, Mend, ReviewChoice, Transition
+from gtm_hit.models.role import Membership, Role, RoleChange
 from gtm_hit.models.score import AssignmentScore, WorkerScore
+from gtm_hit.models.stitching import StitchConflict, StitchedFrame, Stitching, StitchingRun
 from gtm_hit.models.work import Assignment, Batch, Worker
 
 __all__ = [
@@ -43,8 +43,8 @@ __all__ = [
     "Dataset",
     "EntryLink",
     "Frame",
-    "HookEvent",
     "GoldFrame",
+    "HookEvent",
     "Image",
     "Job",
     "Layer",
@@ -53,17 +53,17 @@ __all__ = [
     "Mend",
     "MoneyEntry",
     "OutboxRow",
-    "PlatformAccount",
-    "Release",
-    "ReviewChoice",
-    "Role",
-    "RoleChange",
     "PlantedFault",
     "Planting",
+    "PlatformAccount",
     "Qualification",
     "QualificationAttempt",
     "QualificationGrant",
+    "Release",
     "RequiredQualification",
+    "ReviewChoice",
+    "Role",
+    "RoleChange",
     "Save",
     "StitchConflict",
     "StitchedFrame",

@@ -2,7 +2,20 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-from gtm_hit.pages import api_tokens, calibration, gold, home, hooks, jobs, pay, people, platform, qualifications, releases, scores
+from gtm_hit.pages import (
+    api_tokens,
+    calibration,
+    gold,
+    home,
+    hooks,
+    jobs,
+    pay,
+    people,
+    platform,
+    qualifications,
+    releases,
+    scores,
+)
 from gtm_hit.pages.campaigns import links as campaign_links
 from gtm_hit.pages.campaigns import listing as campaigns
 from gtm_hit.pages.campaigns import rules as campaign_rules
