@@ -7,7 +7,7 @@ from django.views.decorators.gzip import gzip_page
 from drf_spectacular.views import SpectacularAPIView
 
 # Importing it tells drf-spectacular about the tokens.
-from gtm_hit.api import calibration, jobs, releases, work
+from gtm_hit.api import calibration, campaign_people, campaigns, jobs, releases, work
 from gtm_hit.api.common import schema  # noqa: F401
 from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.common.docs import DocsView
@@ -65,6 +65,15 @@ one_layer: list[URLPattern | URLResolver] = [
     path("statistics/<slug:figure>.<slug:kind>", statistics.StatisticsFigure.as_view()),
     path("exports/", releases.Exports.as_view()),
 ]
+one_campaign: list[URLPattern | URLResolver] = [
+    path("", campaigns.OneCampaign.as_view()),
+    path("step/", campaigns.CampaignStep.as_view()),
+    path("course/", campaigns.CampaignCourse.as_view()),
+    path("links/", campaign_people.CampaignLinks.as_view()),
+    path("links/<int:pk>/", campaign_people.OneCampaignLink.as_view()),
+    path("workers/", campaign_people.CampaignWorkers.as_view()),
+    path("workers/<str:worker>/", campaign_people.OneCampaignWorker.as_view()),
+]
 one_dataset: list[URLPattern | URLResolver] = [
     path("", listing.OneDataset.as_view()),
     path("cameras/", listing.Cameras.as_view()),
@@ -85,6 +94,8 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("link/", work.Link.as_view()),
     path("progress/", work.Progress.as_view()),
     path("assignments/", work.Assignments.as_view()),
+    path("campaigns/", campaigns.Campaigns.as_view()),
+    path("campaigns/<str:name>/", include(one_campaign)),
     path("releases/", releases.Releases.as_view()),
     path("releases/<int:number>/", releases.OneRelease.as_view()),
     path("releases/<int:number>/download/", releases.DownloadRelease.as_view()),
