@@ -106,7 +106,8 @@ def prepare(claimed: Claim) -> bool:
         return True
     print("Making the demo scene (once) …", flush=True)
     # A process of its own: it starts others, and all of them can be ended at once.
-    command = [sys.executable, str(ROOT / "manage.py"), "makedemo", "--slug", settings.TUTORIAL_DATASET]
+    command = [sys.executable, str(ROOT / "manage.py"), "makedemo", "--campaign"]
+    command += ["--slug", settings.TUTORIAL_DATASET]
     return run_once(claimed, command) == 0
 
 
@@ -178,6 +179,7 @@ def welcome(host: str, port: int, password: str | None) -> None:
     print(f"  staff login   name {STAFF_NAME}   password {shown}")
     print("  annotate at once:", flush=True)
     call_command("makelink", settings.TUTORIAL_DATASET, worker="local-annotator", base_url=server)
+    print(f"  or, logged in, under “My work”:\n{server}{settings.SCRIPT_NAME}/my-work/")
     print("\nCtrl-C stops everything; data stay in", settings.DATA_DIR, "\n", flush=True)
 
 

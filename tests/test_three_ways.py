@@ -13,14 +13,23 @@ TABLE = (Path(__file__).resolve().parent.parent / "docs" / "three-ways.md").read
 LINES = [line for line in TABLE.splitlines() if line.startswith("|")]
 ROWS = [[cell.strip() for cell in line.strip("|").split("|")] for line in LINES]
 
-KNOWN = {"S": "square", "L": "truth", "N": "1", "J": "1", "R": "1", "C": "autumn", "NAME": "LICENSE"}
+KNOWN = {
+    "S": "square",
+    "L": "truth",
+    "N": "1",
+    "J": "1",
+    "R": "1",
+    "C": "walk",
+    "W": "w-1",
+    "NAME": "LICENSE",
+}
 SHORTENED = {"statistics": "datasets/square/layers/truth", "evaluation": "datasets/square"}
 
 
 def words(column: int) -> list[str]:
     """What stands in code in a column, one address or command each."""
     found = [code for row in ROWS[2:] for code in re.findall(r"`([^`]+)`", row[column])]
-    return [re.sub(r"^(GET|POST) ", "", code) for code in found if code not in {"GET", "pom"}]
+    return [re.sub(r"^(GET|POST|PATCH) ", "", code) for code in found if code not in {"GET", "POST", "pom"}]
 
 
 def address(code: str) -> str:

@@ -9,6 +9,8 @@ from drf_spectacular.views import SpectacularAPIView
 # Importing it tells drf-spectacular about the tokens.
 from gtm_hit.api import (
     calibration,
+    campaign_people,
+    campaigns,
     gold,
     jobs,
     outbox,
@@ -101,6 +103,15 @@ campaign_pay: list[URLPattern | URLResolver] = [
     path("platform/draft/", platform.DraftStudy.as_view()),
     path("platform/study/", platform.ChangeStudy.as_view()),
 ]
+one_campaign: list[URLPattern | URLResolver] = [
+    path("", campaigns.OneCampaign.as_view()),
+    path("step/", campaigns.CampaignStep.as_view()),
+    path("course/", campaigns.CampaignCourse.as_view()),
+    path("links/", campaign_people.CampaignLinks.as_view()),
+    path("links/<int:pk>/", campaign_people.OneCampaignLink.as_view()),
+    path("workers/", campaign_people.CampaignWorkers.as_view()),
+    path("workers/<str:worker>/", campaign_people.OneCampaignWorker.as_view()),
+]
 one_dataset: list[URLPattern | URLResolver] = [
     path("", listing.OneDataset.as_view()),
     path("cameras/", listing.Cameras.as_view()),
@@ -136,6 +147,8 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("reviews/<int:pk>/comments/", review.ReviewComments.as_view()),
     path("reviews/<int:pk>/comments/<int:comment>/", review.ReviewComment.as_view()),
     path("reviews/<int:pk>/mend/", review.ReviewMend.as_view()),
+    path("campaigns/", campaigns.Campaigns.as_view()),
+    path("campaigns/<str:name>/", include(one_campaign)),
     path("releases/", releases.Releases.as_view()),
     path("releases/<int:number>/", releases.OneRelease.as_view()),
     path("releases/<int:number>/download/", releases.DownloadRelease.as_view()),

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from django.core.management.base import CommandError
 
-from gtm_hit.models import Dataset, Layer
+from gtm_hit.models import Campaign, Dataset, Layer
 
 
 def dataset_named(slug: str) -> Dataset:
@@ -24,6 +24,16 @@ def layer_named(slug: str, name: str) -> Layer:
     if found is None:
         names = Layer.objects.filter(dataset=dataset).values_list("name", flat=True)
         raise CommandError(f"no layer {name} in dataset {slug}{_there(names)}")
+    return found
+
+
+def campaign_named(slug: str, name: str) -> Campaign:
+    """With its dataset; raises CommandError that tells which datasets or campaigns there are."""
+    dataset = dataset_named(slug)
+    found = Campaign.objects.select_related("dataset").filter(dataset=dataset, name=name).first()
+    if found is None:
+        names = dataset.campaigns.values_list("name", flat=True)
+        raise CommandError(f"no campaign {name} of dataset {slug}{_there(names)}")
     return found
 
 

@@ -22,4 +22,6 @@ class Command(BaseCommand):
             added = batches.make_batches(dataset, size, copies)
         except batches.BatchError as error:
             raise CommandError(str(error)) from error
-        self.stdout.write(f"{slug}: {added} batches added, {dataset.batches.count()} in all")
+        self.stdout.write(
+            f"{slug}: {added} batches added, {dataset.batches.filter(campaign=None).count()} in all"
+        )

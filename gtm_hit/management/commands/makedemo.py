@@ -7,7 +7,7 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
 from gtm_hit.management.progress import ProgressLine
-from gtm_hit.ops.datasets.demo import make_demo
+from gtm_hit.ops.datasets.demo import make_demo, open_campaign
 from gtm_hit.ops.errors import OperationError
 
 
@@ -21,11 +21,21 @@ class Command(BaseCommand):
         parser.add_argument("--slug", default="demo", help="the dataset's name in addresses (default: demo)")
         parser.add_argument("--frames", type=int, default=None, help="annotated frames (default: 20)")
         parser.add_argument("--seed", type=int, default=None, help="another seed gives other people")
+        parser.add_argument("--campaign", action="store_true", help="open a campaign of it for the own team")
 
-    def handle(self, *args: Any, slug: str, frames: int | None, seed: int | None, **options: Any) -> None:
+    def handle(
+        self,
+        *args: Any,
+        slug: str,
+        frames: int | None,
+        seed: int | None,
+        campaign: bool,
+        **options: Any,
+    ) -> None:
         progress = ProgressLine(self.stdout)
         try:
             demo = make_demo(slug, frames, seed, progress)
+            opened = open_campaign(demo) if campaign else None
         except OperationError as error:
             progress.finish()
             raise CommandError(str(error)) from error
@@ -33,5 +43,7 @@ class Command(BaseCommand):
         state = "made" if demo.frames_added else "was there already"
         self.stdout.write(
             f"Demo scene {slug} {state}: {demo.dataset.frames.count()} frames, "
-            f"{demo.dataset.batches.count()} batches."
+            f"{demo.dataset.batches.filter(campaign=None).count()} batches."
         )
+        if opened:
+            self.stdout.write(f"Campaign {opened.name}: {opened.get_state_display()}.")

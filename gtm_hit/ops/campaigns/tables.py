@@ -37,24 +37,20 @@ def assignments_csv(campaign: Campaign, worker: Worker | None = None) -> str:
     head = ["batch", "copy", "worker", "state", "frames_done", "active_minutes"]
     rows = [
         [
-            one.batch.number,
-            one.batch.copy,
-            one.worker.pseudonym,
-            one.state,
-            one.frames_done,
-            round((one.seconds or 0) / 60, 1),
-            moment(one.leased_at),
-            moment(one.submitted_at),
-            one.submission,
-            one.layer.name,
+            row.assignment.batch.number,
+            row.assignment.batch.copy,
+            row.assignment.worker.pseudonym,
+            row.assignment.state,
+            row.frames_done,
+            row.minutes,
+            moment(row.assignment.leased_at),
+            moment(row.assignment.submitted_at),
+            row.assignment.submission,
+            row.assignment.layer.name,
         ]
-        for one in annotated(campaign, worker)
+        for row in overview.with_sums(overview.assignments(campaign, worker))
     ]
     return table([*head, "taken_utc", "submitted_utc", "submission", "layer"], rows)
-
-
-def annotated(campaign: Campaign, worker: Worker | None) -> Iterable[Any]:
-    return overview.assignments(campaign, worker)
 
 
 def moment(at: Any) -> str:

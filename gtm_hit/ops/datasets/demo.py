@@ -29,7 +29,8 @@ from gtm_hit.formats.calibration.wildtrack_xml import (
 from gtm_hit.formats.files import write_bytes
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
-from gtm_hit.models import Dataset, Layer
+from gtm_hit.models import Campaign, Dataset, Layer
+from gtm_hit.ops.campaigns import editing, states
 from gtm_hit.ops.datasets.importing import import_dataset
 from gtm_hit.ops.datasets.options import PRESETS, ImportOptions, SceneValues
 from gtm_hit.ops.errors import OperationError
@@ -39,6 +40,9 @@ from gtm_hit.ops.work.batches import make_batches
 CAMERAS = settings.BASE_DIR / "fixtures" / "wildtrack_cameras.json"
 TRUTH = "truth"
 MOST_FRAMES = 1000
+
+
+CAMPAIGN = "team"
 
 
 class DemoError(OperationError, ValueError):
@@ -76,6 +80,20 @@ def make_demo(
         raise DemoError(f"Dataset {slug} is there already and is no demo scene.")
     make_batches(dataset)
     return Demo(dataset, added)
+
+
+def open_campaign(demo: Demo) -> Campaign:
+    """The demo scene's own campaign, for whoever has an account; one that is there already stays as it is."""
+    there = Campaign.objects.filter(dataset=demo.dataset, name=CAMPAIGN).first()
+    if there:
+        return there
+    values = {
+        "name": CAMPAIGN,
+        "title": "The demo scene, for the own team",
+        "platform": Campaign.Platform.OWN_TEAM,
+        "batches_at_once": 2,
+    }
+    return states.take(editing.create(demo.dataset, values), "open")
 
 
 def _make(slug: str, scene: Scene, progress: Progress) -> Dataset:

@@ -59,7 +59,9 @@ def worker(request: HttpRequest, slug: str, name: str, pseudonym: str) -> HttpRe
     known = overview.workers(campaign).filter(pk=found.pk)
     row = next(iter(overview.worker_rows(campaign, known)), None)
     decided = campaign.workers.filter(worker=found).select_related("changed_by").first()
+    batches = overview.with_sums(page.object_list)
     context = frame(campaign, "campaign-workers", worker=found, row=row, decided=decided, page=page)
+    context["batches"] = batches
     return render(request, "campaigns/worker.html", context)
 
 
