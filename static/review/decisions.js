@@ -112,7 +112,7 @@ export class Decisions {
     this._busy = true;
     try {
       const { next } = await server.decide(action, more);
-      window.location.assign(next === null ? desk.home : desk.desk.replace("/0/", `/${next}/`));
+      window.location.assign(next === null ? desk.home : desk.desk.replace(/\/0\/$/, `/${next}/`));
     } catch (error) {
       this._busy = false;
       notices.say(error instanceof Error ? error.message : String(error));

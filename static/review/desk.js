@@ -98,6 +98,7 @@ function actionsOf({ store, desk }, panes, decisions) {
     l: () => panes.set("labelOpacity", panes.options.labelOpacity ? 0 : 1),
     ...(decide && {
       a: () => (desk.mine ? decisions.acceptMended() : decisions.accept()),
+      ...(desk.mine && { o: () => decisions.accept() }),
       r: () => decisions.giveBack(),
       x: () => decisions.reject(),
       m: () => mend(desk),
@@ -185,6 +186,7 @@ function bar({ desk, store }, actions) {
     button("c", gettext("Comment")),
     button("t", gettext("Take back")),
     button("m", gettext(desk.mine ? "Go on correcting" : "Correct it myself")),
+    button("o", gettext("Accept the original")),
     button("r", gettext("Return")),
     button("x", gettext("Reject")),
     button("a", gettext(desk.mine ? "Accept the corrected copy" : "Accept"), "main"),

@@ -176,6 +176,41 @@ def saving_and_submitting() -> Contest:
     return [*saves, lambda: assignments.submit(assignment).state]
 
 
+def deciding() -> Contest:
+    """Ten reviewers, half of whom accept what the others reject."""
+    from gtm_hit.ops.review.machine import Action
+    from gtm_hit.ops.review.transitions import transition
+    from tests.ops.review.scene import REASON, make_reviewer, make_work, submitted
+
+    work = submitted("deciding", make_work(2, 2, slug="deciding"))
+    reviewers = [make_reviewer(f"deciding-{index}") for index in range(10)]
+    how = {"category": "low_effort", "reason": REASON}
+    actions = [Action.ACCEPT, Action.REJECT] * 5
+    return [
+        lambda by=by, action=action: transition(work, action, by, **how).state
+        for by, action in zip(reviewers, actions, strict=True)
+    ]
+
+
+def overturning() -> Contest:
+    """A rejection is overturned while ten others ask for the batch that it freed."""
+    from gtm_hit.ops.review.machine import Action
+    from gtm_hit.ops.review.transitions import transition
+    from gtm_hit.ops.work import assignments
+    from tests.ops.review.scene import REASON, make_reviewer, make_work, submitted
+    from tests.work_scene import make_worker
+
+    dataset = make_work(2, 2, slug="overturning")
+    work = submitted("overturning", dataset)
+    how = {"category": "low_effort", "reason": REASON}
+    transition(work, Action.REJECT, make_reviewer("overturning-1"), **how)
+    transition(work, Action.APPEAL, work.worker, reason="Look again")
+    workers = [make_worker(f"overturning {index}") for index in range(10)]
+    other = make_reviewer("overturning-2")
+    claims: Contest = [lambda one=one: assignments.claim(one, dataset).batch_id for one in workers]
+    return [*claims, lambda: transition(work, Action.OVERTURN, other, reason="Right").state]
+
+
 def looking_back() -> Contest:
     """No race: what the history says, which each database counts in its own way."""
     from gtm_hit.ops.frames.saving import history, state_at
@@ -192,6 +227,8 @@ def looking_back() -> Contest:
 
 
 RACES = [
+    deciding,
+    overturning,
     looking_back,
     claiming,
     claiming_copies,

@@ -22,8 +22,8 @@ def make_reviewer(name: str = "rita") -> User:
     return User.objects.create_user(name, f"{name}@lab.example", is_staff=True)
 
 
-def make_work(frames: int = 4, size: int = 2, copies: int = 1) -> Dataset:
-    dataset = make_dataset(frames=frames)
+def make_work(frames: int = 4, size: int = 2, copies: int = 1, slug: str = "square") -> Dataset:
+    dataset = make_dataset(slug, frames=frames)
     make_batches(dataset, size=size, copies=copies)
     return dataset
 

@@ -94,6 +94,18 @@ def test_a_batch_submitted_ten_times_has_one_code(races: Races) -> None:
     assert len(races["submitting"][0]) == 20
 
 
+def test_of_ten_reviewers_one_decides_and_the_others_are_told(races: Races) -> None:
+    got = Counter(races["deciding"])
+    assert got.pop("WrongState") == 9
+    assert list(got.values()) == [1] and set(got) <= {"accepted", "rejected"}
+
+
+def test_a_batch_whose_rejection_is_overturned_is_held_by_one_still(races: Races) -> None:
+    got = Counter(races["overturning"])
+    assert got.pop("accepted") == 1
+    assert got["NoFreeBatch"] >= 9 and sum(got.values()) == 10
+
+
 def test_the_history_reads_the_same_on_every_database(races: Races) -> None:
     keys = ["person", "position", "state", "origin", "height", "radius"]
     assert [keys, keys] in races["looking_back"]
