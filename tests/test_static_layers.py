@@ -24,6 +24,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "workbench/warnings": {"base", "truth", "views"},
     "workbench/tutorial": {"base", "views", "workbench/keys"},
     "compare": {"base", "tables", "truth", "views"},
+    "conflicts": {"base"},
     "site": {"base"},
 }
 ABOVE = "workbench"  # builds the page from all of its rooms

@@ -13,7 +13,7 @@ TABLE = (Path(__file__).resolve().parent.parent / "docs" / "three-ways.md").read
 LINES = [line for line in TABLE.splitlines() if line.startswith("|")]
 ROWS = [[cell.strip() for cell in line.strip("|").split("|")] for line in LINES]
 
-KNOWN = {"S": "square", "L": "truth", "N": "1", "J": "1", "NAME": "LICENSE"}
+KNOWN = {"S": "square", "L": "truth", "N": "1", "J": "1", "NAME": "LICENSE", "C": "autumn"}
 SHORTENED = {"statistics": "datasets/square/layers/truth", "evaluation": "datasets/square"}
 
 

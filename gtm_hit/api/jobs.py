@@ -46,6 +46,7 @@ GONE = {
 SCOPES = {
     Job.Kind.EXPORT_LAYER: ApiToken.Scope.RELEASE,
     Job.Kind.MAKE_RELEASE: ApiToken.Scope.RELEASE,
+    Job.Kind.STITCH: ApiToken.Scope.WORK,
 }
 
 

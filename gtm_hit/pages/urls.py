@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-from gtm_hit.pages import api_tokens, calibration, home, jobs, releases
+from gtm_hit.pages import api_tokens, calibration, home, jobs, releases, stitching
 from gtm_hit.pages.datasets import importing as dataset_imports
 from gtm_hit.pages.datasets import listing as datasets
 from gtm_hit.pages.layers import importing as annotation_imports
@@ -16,6 +16,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *batches.urlpatterns,
     *layers.urlpatterns,
     *annotation_imports.urlpatterns,
+    *stitching.urlpatterns,
     *releases.urlpatterns,
     *statistics.urlpatterns,
     *comparing.urlpatterns,
