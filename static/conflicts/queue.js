@@ -69,26 +69,26 @@ export class Queue {
     const following = this.ids.findIndex((each, index) => index > this.index && !this.said.get(each));
     const open = following === -1 ? this.ids.findIndex((each) => !this.said.get(each)) : following;
     if (open !== -1) this.index = open;
-    return this._send(id, "", () => this._server.decide(id, decision));
+    return this._send(id, () => this._server.decide(id, decision));
   }
 
   /** Take back what is shown if it is decided, else the latest decision, and show it. */
   undo() {
     const id = this.said.get(this.current) ? this.current : this._latest.at(-1);
     if (id === undefined) return null;
-    const before = this.said.get(id) ?? "";
     this._latest = this._latest.filter((each) => each !== id);
     this.said.set(id, "");
     this.index = this.ids.indexOf(id);
-    return this._send(id, before, () => this._server.undo(id));
+    return this._send(id, () => this._server.undo(id));
   }
 
-  /** @param {number} id @param {string} before what holds again when it fails @param {() => Promise<unknown>} send */
-  _send(id, before, send) {
+  /** @param {number} id @param {() => Promise<unknown>} send */
+  _send(id, send) {
     const sent = this._sent.then(send).catch((error) => {
-      this.said.set(id, before);
+      // Somebody else may have decided: the server is asked anew.
+      this.said.delete(id);
+      this._details.delete(id);
       this._latest = this._latest.filter((each) => each !== id);
-      this._details.delete(id); // somebody else may have decided: it is fetched anew
       this.index = this.ids.indexOf(id);
       throw error;
     });
