@@ -26,6 +26,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "workbench/tutorial": {"base", "views", "workbench/keys"},
     "compare": {"base", "tables", "truth", "views"},
     "review": {"base", "compare", "tables", "truth", "views"},
+    "conflicts": {"base"},
     "site": {"base"},
 }
 ABOVE = "workbench"  # builds the page from all of its rooms

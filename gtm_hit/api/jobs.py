@@ -49,6 +49,7 @@ SCOPES = {
     Job.Kind.EXPORT_LAYER: ApiToken.Scope.RELEASE,
     Job.Kind.MAKE_RELEASE: ApiToken.Scope.RELEASE,
     Job.Kind.SEND_OUTBOX: ApiToken.Scope.WORK,
+    Job.Kind.STITCH: ApiToken.Scope.WORK,
 }
 
 

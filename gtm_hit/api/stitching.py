@@ -216,7 +216,7 @@ class DecideConflict(StaffView):
     @extend_schema(
         operation_id="decide_stitch_conflict",
         summary="The same person, or two",
-        description="Remembered; the next run puts it into the layer. The same again changes nothing.",
+        description="Remembered; the next run puts it into the layer.",
         request=DecideSerializer,
         responses=answers(200, ConflictShape, DECIDES),
     )

@@ -15,6 +15,7 @@ from gtm_hit.pages import (
     qualifications,
     releases,
     scores,
+    stitching,
 )
 from gtm_hit.pages.campaigns import links as campaign_links
 from gtm_hit.pages.campaigns import listing as campaigns
@@ -38,6 +39,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *campaign_workers.urlpatterns,
     *layers.urlpatterns,
     *annotation_imports.urlpatterns,
+    *stitching.urlpatterns,
     *releases.urlpatterns,
     *statistics.urlpatterns,
     *comparing.urlpatterns,

@@ -12,7 +12,6 @@ from gtm_hit.models import StitchConflict
 from gtm_hit.ops.jobs.progress import no_progress
 from gtm_hit.ops.stitching.running import Asked, stitch_layer
 from gtm_hit.ops.stitching.scope import StitchingError, named
-from gtm_hit.stitching.rules import Rules
 
 
 class Command(BaseCommand):
@@ -21,13 +20,13 @@ class Command(BaseCommand):
     def add_arguments(self, parser: ArgumentParser) -> None:
         parser.add_argument("slug", help="the dataset")
         parser.add_argument("--campaign", default="", help="its batches; without: those of no campaign")
-        parser.add_argument("--gate", type=float, default=Rules.gate, help="metres, in common frames")
-        parser.add_argument("--gap", type=int, default=Rules.gap, help="frames somebody may be missing")
+        parser.add_argument("--gate", type=float, default=Asked.gate, help="metres, in common frames")
+        parser.add_argument("--gap", type=int, default=Asked.gap, help="frames somebody may be missing")
         parser.add_argument(
-            "--margin", type=float, default=Rules.margin, help="log odds below which people are asked"
+            "--margin", type=float, default=Asked.margin, help="log odds below which people are asked"
         )
-        parser.add_argument("--return-seconds", type=float, default=Rules.return_seconds)
-        parser.add_argument("--return-reach", type=float, default=Rules.return_reach, help="metres")
+        parser.add_argument("--return-seconds", type=float, default=Asked.return_seconds)
+        parser.add_argument("--return-reach", type=float, default=Asked.return_reach, help="metres")
         parser.add_argument("--json", action="store_true", help="print one object")
 
     def handle(self, *, slug: str, campaign: str, json: bool, **options: Any) -> None:

@@ -108,10 +108,9 @@ def _pictures(dataset: Dataset, sides: dict[str, list[Place]]) -> list[list[Pict
     images = _images(dataset, frames)
     rows = []
     for camera in _best_views(boxes, visible):
+        seen, shows = boxes[:, camera], visible[:, camera]
         row = [
-            _picture(
-                images[frame, camera], frame, _marks(marked, frame, boxes[:, camera], visible[:, camera])
-            )
+            _picture(images[frame, camera], frame, _marks(marked, frame, seen, shows))
             for frame in frames
             if (frame, camera) in images
         ]
