@@ -95,14 +95,15 @@ def with_faults(people: dict[int, list[Row]], faults: list[Fault]) -> dict[int, 
     }
 
 
-def whose(rows: list[Row], person: int, place: int) -> Row | None:
+def whose(rows: list[Row], person: int, place: int) -> Row:
+    """Whose size somebody has: an invented person is as large as one of the others."""
     here = [row for row in rows if row.position == place]
-    return next(iter(here or [row for row in rows if row.person == person]), None)
+    same = [row for row in rows if row.person == person]
+    return next(iter(here or same), rows[person % len(rows)])
 
 
-def moved(row: Row | None, person: int, position: int) -> Row:
-    sizes = (row.height, row.radius) if row else (None, None)
-    return Row(person, position, CARRIED, PROPOSED, *sizes)
+def moved(row: Row, person: int, position: int) -> Row:
+    return Row(person, position, CARRIED, PROPOSED, row.height, row.radius)
 
 
 def write(assignment: Assignment, frames: list[Frame], people: dict[int, list[Row]]) -> None:

@@ -59,7 +59,7 @@ def without_faults(layer: Layer) -> dict[int, list[Row]]:
     made = [one for changed in left.values() for one in changed]
     frame_ids = dict(layer.dataset.frames.filter(number__in=list(now)).values_list("number", "pk"))
     numbers = {one.frame for one in made}
-    return {frame_ids[number]: after(now[number], number, made) for number in numbers}
+    return {frame_ids[number]: after(now, number, made) for number in numbers}
 
 
 def unjudged(layer: Layer) -> QuerySet[PlantedFault]:
@@ -87,29 +87,29 @@ def positions(now: Rows) -> dict[int, Positions]:
     return {number: {row.person: row.position for row in rows} for number, rows in now.items()}
 
 
-def after(rows: list[Row], number: int, made: Sequence[Change]) -> list[Row]:
+def after(now: Rows, number: int, made: Sequence[Change]) -> list[Row]:
     """One frame's rows after the changes; who is moved or renamed keeps everything else."""
     mine = [one for one in made if one.frame == number]
-    before = {row.person: row for row in rows}
+    before = {row.person: row for row in now[number]}
     kept = {person: row for person, row in before.items() if person not in {one.was for one in mine}}
     for one in mine:
-        if one.person is None or one.position is None:
-            continue
-        old = before.get(one.was) if one.was is not None else None
-        new = replace(old, person=one.person, position=one.position) if old else added(one)
-        kept[one.person] = new
+        if one.person is not None and one.position is not None:
+            old = before[one.was] if one.was is not None else elsewhere(now, one.person)
+            kept[one.person] = replace(old, person=one.person, position=one.position)
     return sorted(kept.values(), key=lambda row: row.person)
 
 
-def added(one: Change) -> Row:
-    assert one.person is not None and one.position is not None
-    return Row(one.person, one.position, origin=Annotation.Origin.PROPOSED.value)
+def elsewhere(now: Rows, person: int) -> Row:
+    """Somebody who comes back is as large as in another frame."""
+    same = [row for rows in now.values() for row in rows if row.person == person]
+    sizes = (same[0].height, same[0].radius) if same else (None, None)
+    return Row(person, 0, Annotation.State.VALIDATED.value, Annotation.Origin.PROPOSED.value, *sizes)
 
 
 def take_out(layer: Layer, now: Rows, made: Sequence[Change]) -> dict[int, Save]:
     """One save by nobody for each frame that changes, by frame number."""
     return {
-        number: append(layer, number, after(now[number], number, made))
+        number: append(layer, number, after(now, number, made))
         for number in sorted({one.frame for one in made})
     }
 

@@ -185,6 +185,24 @@ def test_sizes_stay_with_the_bodies(scene: tuple[Campaign, Layer]) -> None:
         assert one.height == heights[one.frame_id, one.position]
 
 
+def test_an_invented_person_has_a_size_like_the_others(scene: tuple[Campaign, Layer]) -> None:
+    campaign, truth = scene
+    truth.annotations.update(height=1.7)
+    plant_everywhere(campaign, truth, kinds=[FaultKind.INVENTED])
+    assert set(take(campaign).layer.annotations.values_list("height", flat=True)) == {1.7}
+
+
+def test_somebody_who_comes_back_has_his_size_again(scene: tuple[Campaign, Layer]) -> None:
+    campaign, truth = scene
+    truth.annotations.update(height=1.7)
+    plant_everywhere(campaign, truth, kinds=[FaultKind.REMOVED])
+    assignment = take(campaign)
+    assignment.layer.annotations.update(state="validated")
+    withdraw(assignment)
+    assert assignment.layer.annotations.count() == 80
+    assert set(assignment.layer.annotations.values_list("height", flat=True)) == {1.7}
+
+
 def test_frames_shared_with_accepted_work_start_with_it(scene: tuple[Campaign, Layer]) -> None:
     campaign, _truth = scene
     planting.settle(campaign, None, 1.0, 1, [FaultKind.SHIFTED])

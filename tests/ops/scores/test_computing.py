@@ -8,7 +8,7 @@ import pytest
 from django.utils import timezone
 
 from gtm_hit.models import Assignment, AssignmentScore, Campaign, Layer, WorkerScore
-from gtm_hit.ops.gold import frames
+from gtm_hit.ops.gold import frames, planting
 from gtm_hit.ops.scores import computing, words
 from gtm_hit.ops.scores.measuring import measure
 from gtm_hit.ops.scores.suspicion import by_suspicion, suspicion
@@ -60,6 +60,7 @@ def test_what_was_taken_out_is_not_counted_as_the_workers_own_edit(scene: tuple[
 
 def test_copies_are_compared_and_a_rejected_one_is_not(scene: tuple[Campaign, Layer]) -> None:
     campaign = scene[0]
+    planting.stop(campaign)
     first = hand_in(take(campaign), truth_of_square())
     campaign.batches.filter(number=2).delete()
     off = {n: {p: moved(at, 0.0, 0.6) for p, at in people.items()} for n, people in truth_of_square().items()}
