@@ -27,7 +27,7 @@ class Migration(migrations.Migration):
 
     dependencies = [
         ('auth', '0012_alter_user_first_name_max_length'),
-        ('gtm_hit', '0009_campaigns'),
+        ("gtm_hit", "0009_campaigns"),
         migrations.swappable_dependency(settings.AUTH_USER_MODEL),
     ]
 

@@ -8,7 +8,7 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('gtm_hit', '0009_campaigns'),
+        ("gtm_hit", "0011_campaign_links"),
         migrations.swappable_dependency(settings.AUTH_USER_MODEL),
     ]
 
