@@ -25,7 +25,14 @@ def places(
     folder = tmp_path_factory.mktemp("access")
     folders = {
         name: folder / name.lower()
-        for name in ("EXPORTS_ROOT", "RELEASES_ROOT", "TABLES_ROOT", "UPLOADS_ROOT", "INCOMING_ROOT")
+        for name in (
+            "MEDIA_ROOT",
+            "EXPORTS_ROOT",
+            "RELEASES_ROOT",
+            "TABLES_ROOT",
+            "UPLOADS_ROOT",
+            "INCOMING_ROOT",
+        )
     }
     with django_db_blocker.unblock(), override_settings(**folders), transaction.atomic():
         yield Places(make_place(HERE), make_place(ELSEWHERE))

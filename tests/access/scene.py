@@ -6,11 +6,14 @@ import re
 from dataclasses import dataclass, field
 
 from django.contrib.auth.models import User
+from django.core.files.base import ContentFile
+from django.core.files.storage import default_storage
 
 from gtm_hit.models import Assignment, Dataset, Job, Layer, Release
 from gtm_hit.ops.access import granting
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.exports import exporting
+from gtm_hit.ops.ground import grid_files
 from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.work import assignments, batches, links
 from tests.work_scene import make_dataset, make_layer, make_worker, row, save
@@ -43,6 +46,8 @@ class Place:
 
 def make_place(slug: str) -> Place:
     dataset = make_dataset(slug, frames=12, images=True)
+    # Cameras of its own, so that its grid files are no other dataset's.
+    dataset.cameras.update(tvec=[0.0, 1.0, 12.0 + len(slug)])
     batches.make_batches(dataset, size=4)
     assignment = assignments.claim(make_worker(f"of-{slug}"), dataset)
     layer, hidden = make_layer(dataset), make_layer(dataset, SECRET, Layer.Kind.GROUND_TRUTH, hidden=True)
@@ -66,6 +71,8 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
         manifest_digest="0" * 64,
     )
     picture = dataset.frames.all()[0].images.all()[0].light_digest
+    default_storage.save(f"images/{picture[:2]}/{picture}.jpg", ContentFile(b"picture"))
+    grid = grid_files.digest_of(dataset, dataset.calibrated_cameras()[0])
     return {
         "datasets/<slug:slug>": f"datasets/{dataset.slug}",
         "layers/<str:name>": f"layers/{layer.name}",
@@ -84,7 +91,7 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
         "from/<int:first>": "from/0",
         "coverage/<str:digest>": "coverage/0",
         "images/(?P<digest>[0-9a-f]{64})": f"images/{picture}",
-        "grids/(?P<digest>[0-9a-f]{64})": "grids/" + "0" * 64,
+        "grids/(?P<digest>[0-9a-f]{64})": f"grids/{grid}",
         "join/<str:token>": f"join/{links.entry_token(dataset)}",
         "work/<str:token>": f"work/{links.worker_token(assignment.worker, dataset)}",
         "annotate/<str:token>": f"annotate/{links.assignment_token(assignment)}",

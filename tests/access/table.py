@@ -3,7 +3,7 @@
 `"address": "METHOD:need …"`. Needs are
 
 - `anyone`, with no login at all (what the address carries, a signed token, is authority enough)
-- `assignment`, `worker`: who sends such a token in the header
+- `assignment`, `worker`: who sends such a token in the header; a worker's opens the tutorial only
 - a role, for the dataset of the address: `annotator` `reviewer` `manager` `maintainer` `administrator`
 - `sees`: reviewer or maintainer · `cares`: manager or maintainer
 - with `-all`: the role for one dataset is not enough
@@ -20,8 +20,8 @@ TABLE = {
     "admin/login/": "GET:anyone POST:anyone",
     "annotate/<str:token>/": "GET:anyone",
     "api/v1/": "GET:anyone~",
-    r"api/v1/^grids/(?P<digest>[0-9a-f]{64})\.gz$": "GET:sees+assignment+worker~",
-    r"api/v1/^images/(?P<digest>[0-9a-f]{64})\.jpg$": "GET:sees+assignment+worker~",
+    r"api/v1/^grids/(?P<digest>[0-9a-f]{64})\.gz$": "GET:sees+assignment",
+    r"api/v1/^images/(?P<digest>[0-9a-f]{64})\.jpg$": "GET:sees+assignment",
     "api/v1/assignment/frames/": "GET:assignment",
     "api/v1/assignment/frames/<int:number>/": "GET:assignment PUT:assignment",
     "api/v1/assignment/frames/<int:number>/history/": "GET:assignment",

@@ -99,7 +99,7 @@ class Caller:
             self.client.cookies = self.cookies.copy()
             answer = self.client.generic(method, address, content_type=kind, headers=self.headers)
             if answer.streaming:
-                answer.close()
+                b"".join(answer.streaming_content)  # closes the file, and no connection as close() does
             transaction.set_rollback(True)
         return answer
 
