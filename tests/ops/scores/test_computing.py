@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from datetime import timedelta
+from typing import Any
 
 import pytest
+from celery import current_app
 from django.utils import timezone
 
+from annotator.celery import app
+from gtm_hit import tasks
 from gtm_hit.models import Assignment, AssignmentScore, Campaign, Layer, WorkerScore
 from gtm_hit.ops.gold import frames, planting
 from gtm_hit.ops.scores import computing, words
@@ -144,3 +148,28 @@ def test_the_score_says_what_cost_most(scene: tuple[Campaign, Layer]) -> None:
     row = computing.of_worker(campaign, bad.worker)
     assert row is not None
     assert words.of_score(row)[0] == "0 of 3 planted faults repaired."
+
+
+def test_every_submission_of_a_campaign_asks_for_its_score_once_it_is_committed(
+    scene: tuple[Campaign, Layer], monkeypatch: pytest.MonkeyPatch, django_capture_on_commit_callbacks: Any
+) -> None:
+    sent: list[Any] = []
+    monkeypatch.setattr(current_app, "send_task", lambda name, args, **_: sent.append((name, args)))
+    with django_capture_on_commit_callbacks(execute=True):
+        done = hand_in(take(scene[0]), truth_of_square())
+    assert sent == [(tasks.score_assignment.name, [done.pk])]
+
+
+def test_without_a_broker_work_is_submitted_all_the_same(
+    scene: tuple[Campaign, Layer], monkeypatch: pytest.MonkeyPatch, django_capture_on_commit_callbacks: Any
+) -> None:
+    def away(*_args: Any, **_values: Any) -> None:
+        raise OSError("no broker")
+
+    monkeypatch.setattr(current_app, "send_task", away)
+    with django_capture_on_commit_callbacks(execute=True):
+        assert hand_in(take(scene[0]), truth_of_square()).state == "submitted"
+
+
+def test_the_clock_computes_all_scores_every_night() -> None:
+    assert app.conf.beat_schedule["recompute-scores"]["task"] == tasks.recompute_scores.name
