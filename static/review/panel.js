@@ -14,8 +14,7 @@ export class DeskPanel {
     const marks = new MarksPanel(store, names, select);
     this.element = marks.element;
     this.element.classList.add("desk-panel");
-    this.element.prepend(beside(answer, choose), whyWords(desk));
-    this.element.append(comments);
+    this.element.prepend(beside(answer, choose), whyWords(desk), comments);
   }
 }
 

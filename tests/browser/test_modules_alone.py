@@ -10,7 +10,10 @@ from tests.conftest import REPOSITORY
 pytestmark = pytest.mark.browser
 
 STATIC = REPOSITORY / "static"
-STARTING = {"workbench/main.js", "workbench/start.js", "compare/main.js", "conflicts/main.js"}
+STARTING = {
+    *("workbench/main.js", "workbench/start.js", "workbench/comments/start.js"),
+    *("compare/main.js", "review/main.js", "conflicts/main.js"),
+}
 SCRIPTS = {
     f"site/{path.name}" for path in (STATIC / "site").glob("*.js")
 }  # of ordinary pages, run as they are

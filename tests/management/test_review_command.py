@@ -1,15 +1,20 @@
-"""The review command as a process: what a script sees and decides."""
+"""The review command: what a script sees and decides."""
 
 from __future__ import annotations
 
 import io
 import json
+import os
+import subprocess
+import sys
 from typing import Any
 
 import pytest
 from django.core.management import CommandError, call_command
+from django.db import connection
 
 from gtm_hit.models import Assignment, Transition
+from tests.conftest import REPOSITORY
 from tests.ops.review.scene import REASON, make_reviewer, make_work, state, submitted
 
 pytestmark = pytest.mark.django_db
@@ -61,3 +66,17 @@ def test_what_is_refused_changes_nothing(work: Assignment) -> None:
     with pytest.raises(CommandError, match="no assignment 99"):
         run("accept", "99", "--by", "rita")
     assert state(work) == "submitted" and Transition.objects.count() == 1
+
+
+@pytest.mark.django_db(transaction=True)
+def test_as_a_process_it_prints_one_object_and_fails_with_words(work: Assignment) -> None:
+    def process(*arguments: str) -> subprocess.CompletedProcess[str]:
+        environment = {**os.environ, "DATABASE_URL": f"sqlite:///{connection.settings_dict['NAME']}"}
+        command = [sys.executable, "manage.py", "review", "square", *arguments]
+        environment["DJANGO_SETTINGS_MODULE"] = "tests.settings"
+        return subprocess.run(command, cwd=REPOSITORY, env=environment, capture_output=True, text=True)
+
+    refused = process("reject", str(work.pk), "--by", "rita", "--json")
+    assert refused.returncode == 1 and "categories" in refused.stderr and not refused.stdout
+    accepted = process("accept", str(work.pk), "--by", "rita", "--json")
+    assert json.loads(accepted.stdout)["state"] == state(work) == "accepted"

@@ -137,7 +137,7 @@ class Reviewing(RuleBasedStateMachine):
     @there_is("submitted")
     @rule(
         pick=picks,
-        action=st.sampled_from([Action.REJECT, Action.RETURN, Action.ACCEPT]),
+        action=st.sampled_from([Action.REJECT, Action.ACCEPT]),
         who=st.integers(0, 1),
     )
     def decide(self, pick: int, action: Action, who: int) -> None:
@@ -165,6 +165,17 @@ class Reviewing(RuleBasedStateMachine):
             step = Action.ACCEPT_MENDED
             self.try_step(step.value, lambda: transition(mine, step, self.users[who]))
 
+    @there_is("submitted")
+    @rule(pick=picks, who=st.integers(0, 1), again=st.booleans())
+    def give_back(self, pick: int, who: int, again: bool) -> None:
+        """And sometimes the worker submits it again."""
+        if mine := self.some(pick, "submitted"):
+            step = Action.RETURN
+            self.try_step(step.value, lambda: transition(mine, step, self.users[who], reason=REASON))
+            mine.refresh_from_db()
+            if again and mine.editable:
+                self.try_step("submit", lambda: assignments.submit(mine))
+
     @there_is("returned")
     @rule(pick=picks, who=st.integers(0, 1))
     def take_back(self, pick: int, who: int) -> None:
@@ -174,8 +185,8 @@ class Reviewing(RuleBasedStateMachine):
 
     @invariant()
     def every_step_is_on_record_and_follows_the_one_before(self) -> None:
-        for assignment in Assignment.objects.all():
-            chain = list(assignment.transitions.order_by("number"))
+        for assignment in Assignment.objects.prefetch_related("transitions"):
+            chain = list(assignment.transitions.all())
             assert [one.number for one in chain] == list(range(1, len(chain) + 1))
             states = ["leased", *(one.to_state for one in chain)]
             assert [one.from_state for one in chain] == states[:-1]
