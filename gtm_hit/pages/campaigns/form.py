@@ -31,6 +31,8 @@ HELP: dict[str, str | Promise] = {
     "copies": gettext_lazy("Opinions of different workers on the same frames."),
     "batches_per_worker": gettext_lazy("Empty: no limit."),
     "lease_minutes": gettext_lazy("Every save makes it longer again."),
+    "expected_minutes": "",
+    "newcomer_batches": "",
     "hourly_floor": gettext_lazy("Who falls below it is proposed a bonus."),
     "review_share": gettext_lazy("0.1: every tenth batch; work under suspicion comes on top."),
 }
@@ -93,7 +95,7 @@ class CampaignForm(forms.ModelForm):
         for title, names in GROUPS:
             yield Group(title, [Row(self, name) for name in names])
 
-    def platform(self) -> Row:
+    def platform_row(self) -> Row:
         return Row(self, "platform")
 
     def platforms(self) -> Iterator[Group]:

@@ -116,6 +116,12 @@ def as_typed(campaign: Campaign, **changed: Any) -> dict[str, Any]:
     return {name: "" if value is None else value for name, value in {**sent, **changed}.items()}
 
 
+def test_the_form_has_a_field_for_every_rule(client: Client, boss: User) -> None:
+    page = text(client.get(BASE + "new/"))
+    for name in CampaignForm(instance=Campaign(dataset=Campaign.objects.get().dataset)).fields:
+        assert f'name="{name}"' in page, name
+
+
 def test_a_campaign_is_made_by_its_form(client: Client, boss: User, campaign: Campaign) -> None:
     draft = Campaign(dataset=campaign.dataset)
     given = as_typed(
