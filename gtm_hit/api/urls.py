@@ -82,6 +82,7 @@ campaign_pay: list[URLPattern | URLResolver] = [
     path("platform/", platform.Account.as_view()),
     path("platform/draft/", platform.DraftStudy.as_view()),
     path("platform/study/", platform.ChangeStudy.as_view()),
+    path("platform/messages/", platform.Messages.as_view()),
 ]
 one_dataset: list[URLPattern | URLResolver] = [
     path("", listing.OneDataset.as_view()),

@@ -12,6 +12,7 @@ from gtm_hit.models import Batch, Campaign, PlatformAccount
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.outbox import accounts
 from gtm_hit.ops.outbox.platform import Platform, Study, StudyDraft
+from gtm_hit.ops.outbox.statuses import STATUS_CHANGE
 
 ACTIONS = ("publish", "pause", "resume", "stop")
 PLACEHOLDERS = "PROLIFIC_PID={{%PROLIFIC_PID%}}&STUDY_ID={{%STUDY_ID%}}&SESSION_ID={{%SESSION_ID%}}"
@@ -67,6 +68,20 @@ def look(campaign: Campaign, platform: Platform) -> tuple[PlatformAccount, Study
     account = existing(campaign)
     study = platform.study(account.study)
     return keep(account, study, account.changed_by), study
+
+
+def have_messages_sent(
+    campaign: Campaign, platform: Platform, workspace: str, target: str, by: User | None
+) -> PlatformAccount:
+    """To our door, signed. A secret that is kept already is used on: a workspace has but one."""
+    account = accounts.of(campaign)
+    if not workspace or not target.startswith("https://"):
+        raise StudyError(_("Messages need a workspace and an address that begins with https://."))
+    if not account.hook_secret:
+        account.hook_secret, account.changed_by = accounts.plain(platform.make_secret(workspace)), by
+        account.save()
+    platform.subscribe(workspace, STATUS_CHANGE, target)
+    return account
 
 
 def existing(campaign: Campaign) -> PlatformAccount:

@@ -100,6 +100,12 @@ class Direct:
     def submissions(self, study: str) -> Iterator[WorkAtPlatform]:
         yield from map(work_of, self.ask("GET", "/api/v1/submissions/")["results"])
 
+    def make_secret(self, workspace: str) -> str:
+        raise NotImplementedError
+
+    def subscribe(self, workspace: str, event: str, target: str) -> None:
+        raise NotImplementedError
+
     def create_study(self, draft: StudyDraft) -> Study:
         raise NotImplementedError
 
