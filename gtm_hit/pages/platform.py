@@ -67,7 +67,7 @@ class StudyForm(forms.Form):
     address = forms.CharField(
         label=gettext_lazy("Address workers are sent to"),
         max_length=1000,
-        help_text=gettext_lazy("The campaign's link, with Prolific's placeholders for who comes."),
+        help_text=gettext_lazy("The campaign's link; Prolific's placeholders for who comes are added."),
     )
     places = forms.IntegerField(label=gettext_lazy("Places"), min_value=1, max_value=100_000)
     minutes = forms.IntegerField(label=gettext_lazy("Minutes"), min_value=1, max_value=1440)

@@ -25,16 +25,22 @@ class StudyError(OperationError):
 def proposed(campaign: Campaign, address: str = "") -> StudyDraft:
     """What the campaign's rules make of a study."""
     code = accounts.of(campaign).completion_code or secrets.token_hex(4).upper()
-    joint = "&" if "?" in address else "?"
     return StudyDraft(
         title=campaign.title or campaign.name,
         description=campaign.instructions,
-        address=f"{address}{joint}{PLACEHOLDERS}" if address else "",
+        address=with_placeholders(address),
         places=Batch.objects.filter(campaign=campaign).count(),
         minutes=campaign.expected_minutes,
         reward=campaign.pay_per_batch,
         completion_code=code,
     )
+
+
+def with_placeholders(address: str) -> str:
+    """Without them nobody would know whose submission it is."""
+    if not address or "{{%SESSION_ID%}}" in address:
+        return address
+    return f"{address}{'&' if '?' in address else '?'}{PLACEHOLDERS}"
 
 
 def draft(campaign: Campaign, platform: Platform, wanted: StudyDraft, by: User | None) -> PlatformAccount:
@@ -43,7 +49,12 @@ def draft(campaign: Campaign, platform: Platform, wanted: StudyDraft, by: User |
     if account.study:
         raise StudyError(_("This campaign has a study already: %(study)s.") % {"study": account.study})
     require(wanted)
-    cleaned = replace(wanted, title=wanted.title.strip(), description=wanted.description.strip())
+    cleaned = replace(
+        wanted,
+        title=wanted.title.strip(),
+        description=wanted.description.strip(),
+        address=with_placeholders(wanted.address.strip()),
+    )
     return keep(account, platform.create_study(cleaned), by, wanted.completion_code)
 
 

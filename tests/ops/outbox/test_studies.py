@@ -89,3 +89,12 @@ def test_messages_that_could_not_come_are_not_asked_for(
     with pytest.raises(studies.StudyError):
         studies.have_messages_sent(fresh, connect(fresh), workspace, door, None)
     assert prolific.asked == []
+
+
+@pytest.mark.parametrize("address", ["https://gtm.example/join/x/", "https://gtm.example/join/x/?a=1"])
+def test_a_pasted_link_gets_the_placeholders_for_who_comes(
+    fresh: Campaign, prolific: Prolific, address: str
+) -> None:
+    sent = prolific.studies[draft(fresh, address=address).study]["external_study_url"]
+    assert sent.startswith(address) and sent.count("?") == 1 and "SESSION_ID={{%SESSION_ID%}}" in sent
+    assert studies.with_placeholders(sent) == sent
