@@ -140,6 +140,8 @@ class Paying(RuleBasedStateMachine):
             for submission in names:
                 self.server.add(submission, worker.external_id)
         self.by_hand = Decimal(0)
+        for which in (0, 1, 3, 5):
+            self.decide(which, "accepted")
 
     def attempt(self, step: str, action: Any) -> Any:
         self.steps[step] += 1
@@ -179,6 +181,12 @@ class Paying(RuleBasedStateMachine):
             sending.send(self.campaign, self.platform, lambda done, total: None)
         except Killed:
             self.steps["killed"] += 1
+
+    @rule(faults=st.lists(st.sampled_from([*FAULTS, "killed", "killed"]), min_size=4, max_size=10))
+    def whole_round(self, faults: list[str]) -> None:
+        self.approve_bonus(None, 0)
+        self.plan()
+        self.send(faults)
 
     @rule(slow=st.booleans())
     def booking(self, slow: bool) -> None:
@@ -254,7 +262,7 @@ class MoneyTest(TestCase):
                     rows_of._raw_delete(rows_of.db)
 
         few = settings(
-            max_examples=15,
+            max_examples=25,
             stateful_step_count=30,
             deadline=None,
             database=None,
