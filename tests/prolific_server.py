@@ -49,6 +49,8 @@ class Prolific:
     asked: list[str] = field(default_factory=list)
     wrongs: list[Wrong] = field(default_factory=list)
     payments: list[tuple[str, int]] = field(default_factory=list)
+    secrets: list[str] = field(default_factory=list)
+    subscriptions: dict[str, dict[str, Any]] = field(default_factory=dict)
     slow: bool = False  # bonuses are booked only by `book`
     base: str = ""
     lock: threading.RLock = field(default_factory=threading.RLock)
@@ -93,6 +95,9 @@ class Prolific:
             (r"POST /api/v1/submissions/([^/]+)/transition/", self.transition),
             (r"POST /api/v1/submissions/([^/]+)/request-return/", self.request_return),
             (r"POST /api/v1/bulk-bonus-payments/([^/]+)/pay/", self.pay),
+            (r"POST /api/v1/hooks/secrets/", self.make_secret),
+            (r"POST /api/v1/hooks/subscriptions/", self.subscribe),
+            (r"POST /api/v1/hooks/subscriptions/([^/]+)/", self.confirm_subscription),
             (r"POST /api/v1/studies/", self.create_study),
             (r"GET /api/v1/studies/([^/]+)/", self.one_study),
             (r"POST /api/v1/studies/([^/]+)/transition/", self.change_study),
@@ -159,6 +164,23 @@ class Prolific:
         if not self.slow:
             self.book()
         return 202, "Payment is being processed"
+
+    def make_secret(self, query: Any, body: Any) -> tuple[int, Any]:
+        self.secrets.append(uuid.uuid4().hex)
+        return 201, {"id": "1", "value": self.secrets[-1], "workspace_id": body["workspace_id"]}
+
+    def subscribe(self, query: Any, body: Any) -> tuple[int, Any]:
+        if not body["target_url"].startswith("https://"):
+            return refusal(400, "target_url must use https")
+        pk = uuid.uuid4().hex[:24]
+        self.subscriptions[pk] = {**body, "id": pk, "is_enabled": False, "confirm": uuid.uuid4().hex}
+        return 201, {"id": pk, "is_enabled": False, "X-Hook-Secret": self.subscriptions[pk]["confirm"]}
+
+    def confirm_subscription(self, pk: str, query: Any, body: Any) -> tuple[int, Any]:
+        if pk not in self.subscriptions or body.get("secret") != self.subscriptions[pk]["confirm"]:
+            return refusal(400, "The secret is wrong")
+        self.subscriptions[pk]["is_enabled"] = True
+        return 200, {"id": pk, "is_enabled": True}
 
     def create_study(self, query: Any, body: Any) -> tuple[int, Any]:
         if missing := [name for name in NEEDED if not body.get(name)]:
@@ -230,11 +252,14 @@ class Handler(BaseHTTPRequestHandler):
             self.connection.shutdown(2)
 
     def send(self, status: int, answer: Any, retry_after: str = "") -> None:
+        hook = answer.pop("X-Hook-Secret", "") if isinstance(answer, dict) else ""
         content = json.dumps(answer).encode()
         with suppress(OSError):
             self.send_response(status)
             self.send_header("Content-Type", "application/json")
             self.send_header("Content-Length", str(len(content)))
+            if hook:
+                self.send_header("X-Hook-Secret", hook)
             if retry_after:
                 self.send_header("Retry-After", retry_after)
             self.end_headers()

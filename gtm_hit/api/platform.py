@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from django.urls import reverse
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.request import Request
@@ -78,6 +79,26 @@ class Account(PlatformView):
         wanted = valid(AccountSerializer(data=request.data))
         with refusals():
             return shown(accounts.configure(campaign, caller(request), **wanted))
+
+
+class MessagesSerializer(serializers.Serializer[Any]):
+    workspace = serializers.CharField(max_length=64)
+
+
+class Messages(PlatformView):
+    @extend_schema(
+        operation_id="have_messages_sent",
+        summary="Have the platform send its messages to this server",
+        request=MessagesSerializer,
+        responses=answers(200, AccountShape, ASKS_PLATFORM),
+    )
+    def post(self, request: Request, slug: str, name: str) -> Response:
+        campaign = campaign_or_404(slug, name)
+        workspace = valid(MessagesSerializer(data=request.data))["workspace"]
+        target = request.build_absolute_uri(reverse("hook-prolific", args=[slug, name]))
+        with refusals():
+            platform, by = connect(campaign), caller(request)
+            return shown(studies.have_messages_sent(campaign, platform, workspace, target, by))
 
 
 class DraftStudy(PlatformView):

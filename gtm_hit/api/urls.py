@@ -102,6 +102,7 @@ campaign_pay: list[URLPattern | URLResolver] = [
     path("platform/", platform.Account.as_view()),
     path("platform/draft/", platform.DraftStudy.as_view()),
     path("platform/study/", platform.ChangeStudy.as_view()),
+    path("platform/messages/", platform.Messages.as_view()),
 ]
 one_campaign: list[URLPattern | URLResolver] = [
     path("", campaigns.OneCampaign.as_view()),

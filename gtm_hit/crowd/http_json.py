@@ -9,6 +9,7 @@ import ssl
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from email.message import Message
 from email.utils import parsedate_to_datetime
 from typing import Any
 from urllib.parse import urlencode, urlsplit
@@ -47,7 +48,7 @@ class HttpJson:
         for attempt in range(self.retries.most):
             last = attempt == self.retries.most - 1
             try:
-                return self._decoded(self._exchange("GET", asked, None))
+                return self._decoded(self._exchange("GET", asked, None)[0])
             except TooFast as error:
                 if last or error.seconds > self.retries.longest:
                     raise
@@ -60,10 +61,15 @@ class HttpJson:
 
     def post(self, path: str, body: Mapping[str, Any]) -> bytes:
         """Once. What came back, which may be nothing; `decoded` reads it."""
-        return self._exchange("POST", path, json.dumps(body).encode())
+        return self._exchange("POST", path, json.dumps(body).encode())[0]
 
     def post_for_answer(self, path: str, body: Mapping[str, Any]) -> Any:
         return self._decoded(self.post(path, body))
+
+    def post_for_header(self, path: str, body: Mapping[str, Any], header: str) -> tuple[Any, str]:
+        """The answer, and one of its headers; empty when it has none."""
+        content, headers = self._exchange("POST", path, json.dumps(body).encode())
+        return self._decoded(content), headers.get(header) or ""
 
     def _decoded(self, content: bytes) -> Any:
         try:
@@ -71,7 +77,7 @@ class HttpJson:
         except ValueError:
             raise Unanswered("The platform answered something that is no JSON.") from None
 
-    def _exchange(self, method: str, path: str, body: bytes | None) -> bytes:
+    def _exchange(self, method: str, path: str, body: bytes | None) -> tuple[bytes, Message]:
         connection = self._connection()
         try:
             try:
@@ -88,7 +94,7 @@ class HttpJson:
                 raise Unanswered(f"{self.base} did not answer: {error!r}") from error
         finally:
             connection.close()
-        return checked(answer, content)
+        return checked(answer, content), answer.headers
 
     def _connection(self) -> http.client.HTTPConnection:
         parts = urlsplit(self.base)

@@ -81,6 +81,23 @@ class ProlificClient:
         """Not idempotent. Prolific pays within some minutes of its answer."""
         self.http.post(f"/api/v1/bulk-bonus-payments/{quoted(prepared)}/pay/", {})
 
+    def make_secret(self, workspace: str) -> str:
+        """What it signs its messages with. A workspace has one: making another ends the one before."""
+        answer = self.http.post_for_answer("/api/v1/hooks/secrets/", {"workspace_id": workspace})
+        secret = answer.get("value") if isinstance(answer, dict) else None
+        if not isinstance(secret, str) or not secret:
+            raise Unanswered("Prolific made a secret and did not tell it.")
+        return secret
+
+    def subscribe(self, workspace: str, event: str, target: str) -> None:
+        """Have messages about an event sent to an address, and confirm that we want them."""
+        body = {"workspace_id": workspace, "event_type": event, "target_url": target}
+        place = "/api/v1/hooks/subscriptions/"
+        answer, secret = self.http.post_for_header(place, body, "X-Hook-Secret")
+        if not isinstance(answer, dict) or not isinstance(answer.get("id"), str):
+            raise Unanswered("Prolific did not say under which number it sends messages.")
+        self.http.post(f"{place}{quoted(answer['id'])}/", {"secret": secret})
+
     def _transition(self, submission: str, body: Mapping[str, str]) -> None:
         self.http.post(f"/api/v1/submissions/{quoted(submission)}/transition/", body)
 

@@ -67,7 +67,7 @@ class StudyForm(forms.Form):
     address = forms.CharField(
         label=gettext_lazy("Address workers are sent to"),
         max_length=1000,
-        help_text=gettext_lazy("The campaign's link, with Prolific's placeholders for who comes."),
+        help_text=gettext_lazy("The campaign's link; Prolific's placeholders for who comes are added."),
     )
     places = forms.IntegerField(label=gettext_lazy("Places"), min_value=1, max_value=100_000)
     minutes = forms.IntegerField(label=gettext_lazy("Minutes"), min_value=1, max_value=1440)
@@ -98,9 +98,7 @@ def shown(
         "own_key": bool(account.token),
         "account_form": AccountForm(initial=first),
         "study_form": study or StudyForm(initial=vars(studies.proposed(campaign))),
-        "hook": request.build_absolute_uri(
-            reverse("hook-prolific", args=[campaign.dataset.slug, campaign.name])
-        ),
+        "hook": hook_of(request, campaign),
         "counts": overview.counts(campaign),
         "next_run": overview.next_run(campaign),
         "page": page,
@@ -108,6 +106,10 @@ def shown(
         "unmatched": statuses.unmatched(campaign) if decides else 0,
     }
     return render(request, "campaigns/platform.html", context, status=status)
+
+
+def hook_of(request: HttpRequest, campaign: Campaign) -> str:
+    return request.build_absolute_uri(reverse("hook-prolific", args=[campaign.dataset.slug, campaign.name]))
 
 
 def files(campaign: Campaign) -> list[tuple[str, handover.Handover]]:
@@ -154,6 +156,15 @@ def draft(request: StaffRequest, slug: str, name: str) -> HttpResponse:
             messages.success(request, _("The study is drafted. Nobody sees it before it is published."))
             return redirect("campaign-platform", slug=slug, name=name)
     return shown(request, campaign, form, status=400)
+
+
+@press
+def messages_here(request: StaffRequest, campaign: Campaign) -> str:
+    workspace = request.POST.get("workspace", "").strip()[:64]
+    studies.have_messages_sent(
+        campaign, connect(campaign), workspace, hook_of(request, campaign), request.user
+    )
+    return _("Prolific sends its messages here from now on.")
 
 
 @press
@@ -225,7 +236,12 @@ def submissions(request: StaffRequest, campaign: Campaign) -> str:
         raise handover.HandoverError(_("Choose a file."))
     content = sent.read(handover.MOST_BYTES + 1)
     lines, news = handover.take_in(campaign, content)
-    return _("%(lines)d submissions were read, %(news)d of them are news.") % {"lines": lines, "news": news}
+    text = ngettext(
+        "%(lines)d submission was read; news: %(news)d.",
+        "%(lines)d submissions were read; news: %(news)d.",
+        lines,
+    )
+    return text % {"lines": lines, "news": news}
 
 
 PLACE = "datasets/<slug:slug>/campaigns/<str:name>/platform/"
@@ -234,6 +250,7 @@ urlpatterns = [
     path(f"{PLACE}account/", account, name="campaign-account"),
     path(f"{PLACE}draft/", draft, name="campaign-draft"),
     path(f"{PLACE}study/", study, name="campaign-study"),
+    path(f"{PLACE}messages/", messages_here, name="campaign-messages"),
     path(f"{PLACE}send/", send, name="campaign-send"),
     path(f"{PLACE}rows/<int:pk>/", row, name="campaign-outbox-row"),
     path(f"{PLACE}files/done/", file_done, name="campaign-file-done"),

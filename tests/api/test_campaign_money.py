@@ -38,6 +38,7 @@ POSTS: dict[str, dict[str, Any]] = {
     "platform/": {"study": "st2"},
     "platform/draft/": {},
     "platform/study/": {"action": "publish"},
+    "platform/messages/": {"workspace": "w1"},
 }
 
 

@@ -31,7 +31,7 @@ PAGES = [
 BUTTONS = [
     *("pay/bonuses/", "pay/paid/", "pay/payout/", "pay/lines/1/take-back/", "platform/account/"),
     *("platform/draft/", "platform/study/", "platform/send/", "platform/rows/1/", "platform/files/done/"),
-    "platform/submissions/",
+    *("platform/submissions/", "platform/messages/"),
 ]
 
 
@@ -151,7 +151,7 @@ def test_files_are_downloaded_and_marked_as_done(staff: Client, ada: Worker, cam
 
 def test_a_list_of_submissions_is_read(staff: Client, ada: Worker) -> None:
     file = SimpleUploadedFile("list.csv", b"Submission id,Status\ns1,APPROVED\n", "text/csv")
-    assert "1 submissions were read, 1" in press(staff, "platform/submissions/", file=file)
+    assert "1 submission was read; news: 1" in press(staff, "platform/submissions/", file=file)
     assert "Choose a file" in press(staff, "platform/submissions/")
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from django.core.management.base import CommandError
+from django.urls import reverse
 
 from gtm_hit.crowd.prolific import connect
 from gtm_hit.management.campaign_command import CampaignCommand, campaign_named, told, user_named
@@ -29,6 +30,9 @@ class Command(CampaignCommand):
         action.add_argument("--draft", metavar="LINK", help="draft a study that sends workers to this link")
         for name in (*studies.ACTIONS, "look"):
             action.add_argument(f"--{name}", dest="action", action="store_const", const=name)
+        action.add_argument(
+            "--messages", nargs=2, metavar=("WORKSPACE", "URL"), help="have them sent to our door"
+        )
         parser.add_argument("--places", type=int, help="with --draft; as many as batches when left out")
 
     def handle(self, *, slug: str, campaign: str, **options: Any) -> None:
@@ -39,6 +43,10 @@ class Command(CampaignCommand):
                 wanted = studies.proposed(found, options["draft"])
                 wanted = replace(wanted, places=options["places"] or wanted.places)
                 studies.draft(found, connect(found), wanted, by)
+            if options["messages"]:
+                workspace, server = options["messages"]
+                door = server.rstrip("/") + reverse("hook-prolific", args=[slug, campaign])
+                studies.have_messages_sent(found, connect(found), workspace, door, by)
             if options["action"] == "look":
                 studies.look(found, connect(found))
             elif options["action"]:

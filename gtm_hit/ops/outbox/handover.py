@@ -72,8 +72,10 @@ def line(row: OutboxRow) -> list[str]:
 
 
 def planned(campaign: Campaign, name: str, upto: int | None = None) -> list[OutboxRow]:
-    found = OutboxRow.objects.filter(campaign=campaign, kind=KINDS[name], state=State.PLANNED, attempts=0)
-    return list(found.filter(pk__lte=upto) if upto is not None else found)
+    """Without what may have reached the platform by itself."""
+    found = OutboxRow.objects.filter(campaign=campaign, kind=KINDS[name], state=State.PLANNED)
+    found = found.filter(pk__lte=upto) if upto is not None else found
+    return [row for row in found if not rows.perhaps_told(row)]
 
 
 def done(campaign: Campaign, name: str, upto: int, by: User | None) -> int:

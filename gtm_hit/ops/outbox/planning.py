@@ -80,7 +80,8 @@ def decide(
         state=State.WITHDRAWN
     )
     before = planned.select_for_update(no_key=True).first()
-    if before and (before.kind == wanted or before.state != State.PLANNED):
+    told = before and (before.state != State.PLANNED or rows.perhaps_told(before))
+    if before and (before.kind == wanted or told):
         return before if before.kind == wanted else None  # told already: platforms don't take it back
     if before:
         rows.withdraw(before, by)

@@ -88,8 +88,15 @@ def step(row: OutboxRow, state: str, error: str, **values: Any) -> None:
         row.state, row.error = state, error
 
 
+def perhaps_told(row: OutboxRow) -> bool:
+    """It waits to be sent again because an answer was lost."""
+    return bool(row.result.get("maybe"))
+
+
 def withdraw(row: OutboxRow, by: User | None) -> None:
     """What nobody was told yet is not told; a bonus goes with its preparation. Raises RowError."""
+    if perhaps_told(row):
+        raise RowError(_("The platform may know of it already; the next sending asks."))
     pair = [row.pk, *([row.after_id] if row.after_id else [])]
     pair += OutboxRow.objects.filter(after=row, state=State.PLANNED).values_list("pk", flat=True)
     taken = OutboxRow.objects.filter(pk__in=pair, state=State.PLANNED)

@@ -169,7 +169,8 @@ def refused(row: OutboxRow, error: Refused, platform: Platform, study: str) -> N
         try:
             status = platform.submission(row.submission).status
         except PlatformError:
-            status = ""
+            rows.leave_unclear(row, str(error))
+            return
         if status == reconciling.WANTED[Kind(row.kind)]:
             rows.confirm(row.pk, {"status": status})
             return

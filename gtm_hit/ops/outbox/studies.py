@@ -12,6 +12,7 @@ from gtm_hit.models import Batch, Campaign, PlatformAccount
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.outbox import accounts
 from gtm_hit.ops.outbox.platform import Platform, Study, StudyDraft
+from gtm_hit.ops.outbox.statuses import STATUS_CHANGE
 
 ACTIONS = ("publish", "pause", "resume", "stop")
 PLACEHOLDERS = "PROLIFIC_PID={{%PROLIFIC_PID%}}&STUDY_ID={{%STUDY_ID%}}&SESSION_ID={{%SESSION_ID%}}"
@@ -24,16 +25,22 @@ class StudyError(OperationError):
 def proposed(campaign: Campaign, address: str = "") -> StudyDraft:
     """What the campaign's rules make of a study."""
     code = accounts.of(campaign).completion_code or secrets.token_hex(4).upper()
-    joint = "&" if "?" in address else "?"
     return StudyDraft(
         title=campaign.title or campaign.name,
         description=campaign.instructions,
-        address=f"{address}{joint}{PLACEHOLDERS}" if address else "",
+        address=with_placeholders(address),
         places=Batch.objects.filter(campaign=campaign).count(),
         minutes=campaign.expected_minutes,
         reward=campaign.pay_per_batch,
         completion_code=code,
     )
+
+
+def with_placeholders(address: str) -> str:
+    """Without them nobody would know whose submission it is."""
+    if not address or "{{%SESSION_ID%}}" in address:
+        return address
+    return f"{address}{'&' if '?' in address else '?'}{PLACEHOLDERS}"
 
 
 def draft(campaign: Campaign, platform: Platform, wanted: StudyDraft, by: User | None) -> PlatformAccount:
@@ -42,7 +49,12 @@ def draft(campaign: Campaign, platform: Platform, wanted: StudyDraft, by: User |
     if account.study:
         raise StudyError(_("This campaign has a study already: %(study)s.") % {"study": account.study})
     require(wanted)
-    cleaned = replace(wanted, title=wanted.title.strip(), description=wanted.description.strip())
+    cleaned = replace(
+        wanted,
+        title=wanted.title.strip(),
+        description=wanted.description.strip(),
+        address=with_placeholders(wanted.address.strip()),
+    )
     return keep(account, platform.create_study(cleaned), by, wanted.completion_code)
 
 
@@ -67,6 +79,20 @@ def look(campaign: Campaign, platform: Platform) -> tuple[PlatformAccount, Study
     account = existing(campaign)
     study = platform.study(account.study)
     return keep(account, study, account.changed_by), study
+
+
+def have_messages_sent(
+    campaign: Campaign, platform: Platform, workspace: str, target: str, by: User | None
+) -> PlatformAccount:
+    """To our door, signed. A secret that is kept already is used on: a workspace has but one."""
+    account = accounts.of(campaign)
+    if not workspace or not target.startswith("https://"):
+        raise StudyError(_("Messages need a workspace and an address that begins with https://."))
+    if not account.hook_secret:
+        account.hook_secret, account.changed_by = accounts.plain(platform.make_secret(workspace)), by
+        account.save()
+    platform.subscribe(workspace, STATUS_CHANGE, target)
+    return account
 
 
 def existing(campaign: Campaign) -> PlatformAccount:

@@ -68,3 +68,33 @@ def test_what_is_not_there_cannot_be_published(fresh: Campaign) -> None:
     draft(fresh)
     with pytest.raises(studies.StudyError):
         studies.change(fresh, connect(fresh), "explode", None)
+
+
+def test_messages_are_subscribed_to_confirmed_and_signed_with_one_secret(
+    fresh: Campaign, prolific: Prolific
+) -> None:
+    doors = ["https://gtm.example/hooks/a/", "https://gtm.example/hooks/b/"]
+    for door in doors:
+        studies.have_messages_sent(fresh, connect(fresh), "w1", door, None)
+    kept = list(prolific.subscriptions.values())
+    assert [(each["target_url"], each["is_enabled"]) for each in kept] == [(door, True) for door in doors]
+    assert {each["event_type"] for each in kept} == {"submission.status.change"}
+    assert prolific.secrets == [PlatformAccount.objects.get().hook_secret]
+
+
+@pytest.mark.parametrize(("workspace", "door"), [("", "https://gtm.example/"), ("w1", "http://gtm.example/")])
+def test_messages_that_could_not_come_are_not_asked_for(
+    fresh: Campaign, prolific: Prolific, workspace: str, door: str
+) -> None:
+    with pytest.raises(studies.StudyError):
+        studies.have_messages_sent(fresh, connect(fresh), workspace, door, None)
+    assert prolific.asked == []
+
+
+@pytest.mark.parametrize("address", ["https://gtm.example/join/x/", "https://gtm.example/join/x/?a=1"])
+def test_a_pasted_link_gets_the_placeholders_for_who_comes(
+    fresh: Campaign, prolific: Prolific, address: str
+) -> None:
+    sent = prolific.studies[draft(fresh, address=address).study]["external_study_url"]
+    assert sent.startswith(address) and sent.count("?") == 1 and "SESSION_ID={{%SESSION_ID%}}" in sent
+    assert studies.with_placeholders(sent) == sent
