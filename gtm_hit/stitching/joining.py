@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -61,12 +61,19 @@ class Joined:
     decided: int = 0  # of the joins, those somebody decided
 
 
-def join(batches: Iterable[Batch], rules: Rules, verdicts: Verdicts | None = None) -> Joined:
+def join(
+    batches: Sequence[Batch],
+    rules: Rules,
+    verdicts: Verdicts | None = None,
+    told: Callable[[int, int], object] = lambda done, total: None,
+) -> Joined:
     """The batches' people as chains; the order of the batches does not matter, nor how anybody numbered."""
     joined, open_ends = Joined(), list[Chain]()
-    for batch in sorted(batches, key=lambda one: (one.first, one.last)):
+    ordered = sorted(batches, key=lambda one: (one.first, one.last))
+    for done, batch in enumerate(ordered, start=1):
         open_ends = [chain for chain in open_ends if chain.last >= batch.first - rules.gap - 1]
         open_ends += _continue(joined, open_ends, batch, rules, verdicts or Verdicts())
+        told(done, len(ordered))
     return joined
 
 

@@ -15,7 +15,7 @@ class Rules:
     gate: float = 0.6  # metres two workers' places of one person may lie apart in common frames
     gap: int = 5  # frames that may lie between a track's end and its continuation
     margin: float = 3.0  # log odds against the second-best answer; less is doubtful
-    return_seconds: float = 60.0  # after which nobody is proposed as the same any more
+    return_seconds: float = 20.0  # after which nobody is proposed as the same any more
     return_reach: float = 4.0  # metres between where somebody left and where somebody came
     seconds: float = 0.5  # between neighbouring frames
     noise: float = 0.05  # metres, standard deviation of a place in X and in Y

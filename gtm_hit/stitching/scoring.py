@@ -13,9 +13,8 @@ from gtm_hit.stitching.tracks import Floats, Ids, Track
 
 NEWCOMERS = 0.01  # people per square metre who could have been there instead
 TAILS = 5.0  # degrees of freedom: people turn, and workers slip, more often than a normal distribution allows
-BOTH_MISSED = (
-    5.0  # log odds of one person where two workers would have had to overlook one each, in one frame
-)
+# Log odds where two workers would have had to overlook one each, 3 % of the time, in a frame they share.
+BOTH_MISSED = 7.0
 STRIDE = 2.5  # metres per second nobody who is predicted deviates by
 
 

@@ -30,12 +30,13 @@ def stitch(
     told: Callable[[int, int], object] = lambda done, total: None,
 ) -> Stitched:
     """One layer out of batches; a group holds the replicas of one batch."""
-    fused = []
+    fused, steps = [], 2 * len(groups)
     for done, group in enumerate(groups, start=1):
         fused.append(fuse(group, rules))
-        told(done, len(groups))
+        told(done, steps)
     said = Verdicts(verdicts)
-    joined = join([each.batch for each in fused], rules, said)
+    batches = [each.batch for each in fused]
+    joined = join(batches, rules, said, lambda done, total: told(len(groups) + done, steps))
     people = linked(joined.chains, verdicts)
     returns = returners(people, rules, said)
     tracks = sorted((_whole(person) for person in people), key=lambda track: track.place_in_order)

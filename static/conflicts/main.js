@@ -40,8 +40,9 @@ function tell(error) {
 function words({ kind, left_at, came_at, metres, seconds }) {
   const apart = `${metres.toFixed(2)} m apart`;
   if (kind === "return")
-    return `Did who left at frame ${left_at} come back at frame ${came_at}? ${apart}, ${seconds.toFixed(0)} s later`;
-  return `Does who was last at frame ${left_at} go on at frame ${came_at}? ${apart}`;
+    return `One person? Left after frame ${left_at}, back in frame ${came_at}: ${seconds.toFixed(0)} s later, ${apart}`;
+  if (left_at === came_at) return `One person? Two batches share frame ${left_at} and have them ${apart}`;
+  return `One person? Last seen in frame ${left_at}, first seen in frame ${came_at}, ${apart}`;
 }
 
 const SAID = new Map([

@@ -50,7 +50,11 @@ function line(path, name, size) {
     end && name !== "other"
       ? [
           svg("circle", { class: name, cx: end.x, cy: -end.y, r: size / 70 }),
-          svg("text", { x: end.x + size / 40, y: -end.y, "font-size": size / 24 }, String(end.frame)),
+          svg(
+            "text",
+            { x: end.x + size / 40, y: -end.y + (name === "before" ? -1 : 2) * (size / 45), "font-size": size / 24 },
+            String(end.frame),
+          ),
         ]
       : [];
   return svg("g", {}, svg("polyline", { class: name, points }), ...dots, ...ends);
