@@ -41,7 +41,7 @@ def account(name: str, role: Role, dataset: Dataset) -> User:
         user = User.objects.create_user(name)
         import_module(granting).grant(user, role, dataset)
         return user
-    return User.objects.create_user(name, is_staff=True)
+    return User.objects.create_user(name, is_superuser=True)
 
 
 def manager(dataset: Dataset) -> User:

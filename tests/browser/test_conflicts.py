@@ -30,7 +30,7 @@ def queue(page: Page, live_server: LiveServer, tmp_path: Path, settings: Any) ->
     page.on("pageerror", lambda error: errors.append(str(error)))
     stitch_layer(Scope(doubtful(pairs=3)), Asked(), None, no_progress)
     client = Client()
-    client.force_login(User.objects.create_user("vera", is_staff=True))
+    client.force_login(User.objects.create_user("vera", is_superuser=True))
     session = client.cookies["sessionid"].value
     page.context.add_cookies([{"name": "sessionid", "value": session, "url": live_server.url}])
     page.goto(f"{live_server.url}/datasets/square/stitching/conflicts/")

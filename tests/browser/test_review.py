@@ -31,7 +31,7 @@ def street() -> Street:
 
 @pytest.fixture
 def rita() -> User:
-    return User.objects.create_user("rita", is_staff=True)
+    return User.objects.create_user("rita", is_superuser=True)
 
 
 @pytest.fixture

@@ -21,7 +21,7 @@ def scene() -> tuple[Campaign, Layer]:
 
 @pytest.fixture
 def manager(client: Client) -> Client:
-    client.force_login(User.objects.create_user("manager", password="x", is_staff=True))
+    client.force_login(User.objects.create_user("manager", password="x", is_superuser=True))
     return client
 
 

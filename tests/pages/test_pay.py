@@ -59,7 +59,7 @@ def ada(campaign: Campaign) -> Worker:
 
 @pytest.fixture
 def staff(client: Client, db: None) -> Client:
-    client.force_login(User.objects.create_user("vera", is_staff=True))
+    client.force_login(User.objects.create_user("vera", is_superuser=True))
     return client
 
 

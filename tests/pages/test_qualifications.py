@@ -47,7 +47,7 @@ def basics(campaign: Campaign) -> Qualification:
 @pytest.fixture
 def manager() -> Client:
     client = Client()
-    client.force_login(User.objects.create_user("manager", password="x", is_staff=True))
+    client.force_login(User.objects.create_user("manager", password="x", is_superuser=True))
     return client
 
 

@@ -30,7 +30,7 @@ def campaign() -> Campaign:
 
 @pytest.fixture
 def manager(client: Client) -> Client:
-    client.force_login(User.objects.create_user("manager", password="x", is_staff=True))
+    client.force_login(User.objects.create_user("manager", password="x", is_superuser=True))
     return client
 
 

@@ -35,7 +35,7 @@ def own_storage(settings: Any, tmp_path: Path) -> None:
 
 @pytest.fixture
 def staff(client: Client) -> Client:
-    client.force_login(User.objects.create_user("ada", password="x", is_staff=True))
+    client.force_login(User.objects.create_user("ada", password="x", is_superuser=True))
     return client
 
 

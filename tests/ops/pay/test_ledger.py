@@ -31,7 +31,7 @@ def ada(db: None) -> Worker:
 
 @pytest.fixture
 def manager(db: None) -> User:
-    return User.objects.create_user("manager", is_staff=True)
+    return User.objects.create_user("manager", is_superuser=True)
 
 
 def only(campaign: Campaign) -> table.WorkerPay:

@@ -19,7 +19,7 @@ PLACES = [20_000, 40_100, 60_200, 80_300]  # positions of four people, metres ap
 
 
 def make_reviewer(name: str = "rita") -> User:
-    return User.objects.create_user(name, f"{name}@lab.example", is_staff=True)
+    return User.objects.create_user(name, f"{name}@lab.example", is_superuser=True)
 
 
 def make_work(frames: int = 4, size: int = 2, copies: int = 1, slug: str = "square") -> Dataset:

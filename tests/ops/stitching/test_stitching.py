@@ -165,7 +165,7 @@ def test_what_is_doubtful_is_asked_and_a_decision_outlasts_the_next_run() -> Non
     layer = run.stitching.layer
     assert len({person for _, person, _ in rows_of(layer)}) == 3
     asked = StitchConflict.objects.get(stitching=run.stitching)
-    user = User.objects.create_user("ada", is_staff=True)
+    user = User.objects.create_user("ada", is_superuser=True)
     conflicts.decide(asked, StitchConflict.Decision.SAME, user)
     for _ in range(2):
         stitched(dataset)
