@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from importlib.util import find_spec
 from typing import Any
 
 from django.contrib.auth.models import User
 
 from gtm_hit.models import Campaign, Dataset
+from gtm_hit.ops.access import granting
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.campaigns import editing, states
 from tests.work_scene import make_dataset
@@ -36,12 +35,9 @@ def make_campaign(dataset: Dataset | None = None, name: str = "walk", **values: 
 
 def account(name: str, role: Role, dataset: Dataset) -> User:
     """Somebody with one role for one dataset."""
-    granting = "gtm_hit.ops.access.granting"
-    if find_spec(granting):
-        user = User.objects.create_user(name)
-        import_module(granting).grant(user, role, dataset)
-        return user
-    return User.objects.create_user(name, is_superuser=True)
+    user = User.objects.create_user(name)
+    granting.grant(user, role, dataset)
+    return user
 
 
 def manager(dataset: Dataset) -> User:

@@ -10,6 +10,7 @@ from gtm_hit.ops.frames import saving
 from gtm_hit.ops.frames.row import Row
 from gtm_hit.ops.gold import planting
 from gtm_hit.ops.work import assignments
+from gtm_hit.ops.work.pools import Pool
 from gtm_hit.scoring.faults import ALL_KINDS, Positions
 from tests.scoring.people import walking
 from tests.work_scene import make_dataset, make_layer, make_worker
@@ -63,7 +64,7 @@ def plant_everywhere(campaign: Campaign, layer: Layer, faults: int = 3, **values
 def take(campaign: Campaign, name: str = "alice") -> Assignment:
     """The next free batch, for a worker of that name."""
     worker = Worker.objects.filter(external_id=name).first() or make_worker(name)
-    return assignments.claim(worker, campaign.dataset)
+    return assignments.claim(worker, Pool(campaign.dataset, campaign))
 
 
 def places(layer: Layer) -> dict[int, Positions]:

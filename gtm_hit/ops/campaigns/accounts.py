@@ -12,9 +12,9 @@ from django.db.models import Count, Exists, OuterRef, Q, QuerySet, Sum
 from django.utils.translation import gettext as _
 
 from gtm_hit.models import Assignment, Campaign, CampaignLink, CampaignWorker, Worker
+from gtm_hit.ops.access.granting import grant
 from gtm_hit.ops.access.roles import Role, may
 from gtm_hit.ops.campaigns import standing
-from gtm_hit.ops.campaigns.annotator_role import make_annotator
 from gtm_hit.ops.campaigns.errors import CampaignError
 from gtm_hit.ops.work import links
 
@@ -71,7 +71,7 @@ def require_open(link: CampaignLink) -> None:
 
 def take_in(link: CampaignLink, user: User) -> None:
     worker = worker_of(user)
-    make_annotator(user, link.campaign.dataset)
+    grant(user, Role.ANNOTATOR, link.campaign.dataset)
     row = CampaignWorker.objects.filter(campaign=link.campaign, worker=worker).first()
     # A block is the manager's decision, and no link undoes it.
     if row is None:

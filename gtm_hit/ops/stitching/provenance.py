@@ -83,5 +83,10 @@ def authors(layer: Layer, numbers: Collection[int]) -> dict[tuple[int, int], tup
 
 def _layers(ids: Collection[int]) -> Mapping[int, tuple[str, str, int, int]]:
     rows = Assignment.objects.filter(layer__in=ids)
-    columns = ("layer_id", "layer__name", "worker__pseudonym", "batch__number", "batch__copy")
-    return {pk: (name, worker, batch, copy) for pk, name, worker, batch, copy in rows.values_list(*columns)}
+    columns = ("worker__pseudonym", "batch__number", "batch__copy")
+    found = {pk: tuple(rest) for pk, *rest in rows.values_list("layer_id", "layer__name", *columns)}
+    # What a reviewer put right himself is a layer of its own.
+    mended = Assignment.objects.filter(mend__layer__in=ids)
+    for pk, *rest in mended.values_list("mend__layer_id", "mend__layer__name", *columns):
+        found[pk] = tuple(rest)
+    return found

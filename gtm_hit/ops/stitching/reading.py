@@ -10,6 +10,7 @@ import numpy as np
 
 from gtm_hit.models import Annotation, Assignment, Batch, Frame
 from gtm_hit.ops.jobs.progress import Progress
+from gtm_hit.ops.review.mending import layer_that_counts
 from gtm_hit.ops.stitching.scope import Scope
 from gtm_hit.stitching import tracks
 from gtm_hit.stitching.tracks import Ids
@@ -41,8 +42,8 @@ def read(scope: Scope, report: Progress) -> Accepted:
     replicas = [list(each) for _, each in groupby(assignments, key=lambda one: one.batch.number)]
     return Accepted(
         assignments,
-        [[made[one.layer_id] for one in group] for group in replicas],
-        [[one.layer_id for one in group] for group in replicas],
+        [[made[layer_that_counts(one)] for one in group] for group in replicas],
+        [[layer_that_counts(one) for one in group] for group in replicas],
         frames,
     )
 
@@ -55,7 +56,7 @@ def _batches(
     links = Batch.frames.through.objects.filter(batch__in=list(covered))
     for batch, frame in links.values_list("batch_id", "frame_id"):
         covered[batch].append(instant[frame])
-    rows = Annotation.objects.filter(layer__in=[one.layer_id for one in assignments]).order_by()
+    rows = Annotation.objects.filter(layer__in=[layer_that_counts(one) for one in assignments]).order_by()
     found = rows.values_list("layer_id", "frame_id", "person", "position")
     table = np.fromiter(found.iterator(ROWS_AT_ONCE), ROW)
     xy = scope.dataset.grid.metres(table["position"])
@@ -63,8 +64,9 @@ def _batches(
     made = {}
     for one in assignments:
         inside = np.isin(instants, covered[one.batch_id])
-        mine = np.flatnonzero((table["layer"] == one.layer_id) & inside)
-        made[one.layer_id] = tracks.batch(
-            one.layer_id, covered[one.batch_id], instants[mine], table["person"][mine], xy[mine]
+        layer = layer_that_counts(one)
+        mine = np.flatnonzero((table["layer"] == layer) & inside)
+        made[layer] = tracks.batch(
+            layer, covered[one.batch_id], instants[mine], table["person"][mine], xy[mine]
         )
     return made

@@ -12,6 +12,7 @@ from django.db import transaction
 from gtm_hit.models import Campaign, Dataset, Frame, Job, Stitching, StitchingRun
 from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.jobs.progress import Progress, percents
+from gtm_hit.ops.review.mending import layer_that_counts
 from gtm_hit.ops.stitching import conflicts, numbering
 from gtm_hit.ops.stitching.reading import READING, Accepted, read
 from gtm_hit.ops.stitching.scope import Scope, StitchingError, opened
@@ -141,7 +142,7 @@ def _numbers(
 
 def _workers(accepted: Accepted, stitched: Stitched) -> list[dict[str, Any]]:
     """How far workers of batches with several copies are from what all of them together say."""
-    worker_of = {one.layer_id: one.worker.pseudonym for one in accepted.assignments}
+    worker_of = {layer_that_counts(one): one.worker.pseudonym for one in accepted.assignments}
     sums: dict[str, dict[str, Any]] = {}
     for layers, found in zip(accepted.layers, stitched.disagreements, strict=True):
         if len(layers) < 2:

@@ -33,7 +33,7 @@ class Scope:
         found = Assignment.objects.filter(
             batch__dataset=self.dataset, batch__campaign=self.campaign, state=Assignment.State.ACCEPTED
         )
-        return found.select_related("batch", "worker").order_by("batch__number", "layer_id")
+        return found.select_related("batch", "worker", "mend").order_by("batch__number", "layer_id")
 
     def stitching(self) -> Stitching | None:
         found = Stitching.objects.filter(dataset=self.dataset, campaign=self.campaign)

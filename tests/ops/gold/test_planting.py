@@ -101,7 +101,7 @@ def test_somebody_else_who_gets_the_batch_gets_his_own_faults_and_the_same_ones_
         list(PlantedFault.objects.filter(assignment=one).values_list(*kinds)) for one in (first, second)
     ]
     assert faults[0] != faults[1]
-    again = assignments.claim(first.worker, campaign.dataset)
+    again = assignments.claim(first.worker, Pool(campaign.dataset, campaign))
     assert list(PlantedFault.objects.filter(assignment=again).values_list(*kinds)) == faults[0]
 
 

@@ -110,7 +110,7 @@ def test_a_try_whose_time_ran_out_is_taken_up_again(basics: Qualification, alice
 def test_a_worker_with_other_work_finishes_that_first(
     campaign: Campaign, basics: Qualification, alice: Worker
 ) -> None:
-    assignments.claim(alice, campaign.dataset)
+    assignments.claim(alice, Pool(campaign.dataset, campaign))
     with pytest.raises(assignments.BusyElsewhere):
         attempts.begin(basics, alice)
     assert not attempts.attempts(basics, alice).exists()
@@ -131,7 +131,7 @@ def test_a_try_that_ran_out_is_not_handed_out_as_work(
 ) -> None:
     tried = attempts.begin(basics, alice)
     Assignment.objects.filter(pk=tried.pk).update(expires_at=timezone.now() - timedelta(minutes=1))
-    assert assignments.claim(alice, campaign.dataset).batch.campaign == campaign
+    assert assignments.claim(alice, Pool(campaign.dataset, campaign)).batch.campaign == campaign
 
 
 def test_what_was_granted_can_be_revoked_with_a_reason_and_granted_by_hand(

@@ -12,6 +12,7 @@ from django.utils import timezone
 from gtm_hit.models import Assignment, Batch, Campaign, Dataset, Worker
 from gtm_hit.ops.work.assignments import claim
 from gtm_hit.ops.work.batches import make_batches
+from gtm_hit.ops.work.pools import Pool
 from tests.work_scene import finish, make_dataset, make_worker, row, save
 
 REASON = "Half of the people in frames 5 and 10 are missing."
@@ -44,10 +45,15 @@ def annotate(assignment: Assignment, aside: int = 0, missing: int = 0) -> None:
         save(assignment.layer, frame, rows, author=assignment.worker, done=True)
 
 
+def pool(dataset: Dataset) -> Pool:
+    """The campaign all batches were put into, or the dataset itself."""
+    return Pool(dataset, dataset.campaigns.first())
+
+
 def submitted(worker: Worker | str, dataset: Dataset, **how: int) -> Assignment:
     """A batch annotated and handed in."""
     worker = make_worker(worker) if isinstance(worker, str) else worker
-    assignment = claim(worker, dataset)
+    assignment = claim(worker, pool(dataset))
     annotate(assignment, **how)
     return finish(assignment)
 
