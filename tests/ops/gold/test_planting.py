@@ -16,6 +16,7 @@ from gtm_hit.ops.gold import planting
 from gtm_hit.ops.gold.errors import GoldError
 from gtm_hit.ops.gold.withdraw import withdraw
 from gtm_hit.ops.work import assignments, unsaved_leases
+from gtm_hit.ops.work.pools import Pool
 from gtm_hit.scoring.faults import ALL_KINDS, FaultKind
 from tests.gold_scene import (
     annotate,

@@ -37,8 +37,8 @@ from gtm_hit.ops.outbox.platform import (
     WorkAtPlatform,
 )
 from gtm_hit.ops.pay import ledger, table
-from tests.campaign_scene import assign, become, make_account, make_campaign
 from tests.ops.outbox.conftest import REASON
+from tests.paid_campaign import assign, become, make_account, make_campaign
 from tests.prolific_server import Prolific
 from tests.work_scene import make_dataset, make_worker
 

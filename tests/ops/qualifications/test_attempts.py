@@ -13,6 +13,7 @@ from gtm_hit.ops.qualifications import attempts, grants, managing
 from gtm_hit.ops.qualifications.managing import Order, PassMarks, QualificationError
 from gtm_hit.ops.qualifications.requirements import missing_qualifications, offered
 from gtm_hit.ops.work import assignments, batches
+from gtm_hit.ops.work.pools import Pool
 from tests.gold_scene import hand_in, make_scene, truth_of_square
 from tests.scoring.people import moved
 from tests.work_scene import make_dataset, make_layer, make_worker
