@@ -1,8 +1,9 @@
 """Who is whom over time: places of people, frame by frame, joined into tracks by min-cost flow.
 
 A step is priced by how far it is from where the track before and the track after it would have put the
-person, so that people who cross keep their identities. Velocities need tracks and tracks need velocities: a Hungarian
-pass gives the first velocities, two passes of flow follow. The flow's linear programme has whole solutions.
+person, so that people who cross keep their identities. Velocities need tracks and tracks need velocities:
+a Hungarian pass gives the first velocities, two passes of flow follow. The flow's linear programme has whole
+solutions.
 """
 
 from __future__ import annotations
