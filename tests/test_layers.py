@@ -8,19 +8,20 @@ from pathlib import Path
 import pytest
 
 APP = Path(__file__).resolve().parent.parent / "gtm_hit"
-PURE = {"geometry", "formats", "metrics", "demo"}
+PURE = {"geometry", "formats", "metrics", "vision", "demo"}
 MAY_IMPORT = {
     "geometry": set(),
     "formats": {"geometry"},
     "metrics": {"geometry", "formats"},
+    "vision": {"geometry", "formats", "metrics"},
     "demo": {"geometry", "formats"},
     "models": {"geometry"},
-    "ops": {"geometry", "formats", "metrics", "demo", "models"},
+    "ops": {"geometry", "formats", "metrics", "vision", "demo", "models"},
     "crowd": {"models", "ops"},
     "tasks": {"models", "ops"},
     "api": {"geometry", "formats", "metrics", "models", "ops", "crowd"},
     "pages": {"geometry", "formats", "metrics", "models", "ops", "crowd"},
-    "management": {"geometry", "formats", "metrics", "demo", "models", "ops", "crowd"},
+    "management": {"geometry", "formats", "metrics", "vision", "demo", "models", "ops", "crowd"},
     "admin": {"models", "ops"},
 }
 FRAMEWORKS = {"django", "rest_framework", "celery", "drf_spectacular", "annotator"}
