@@ -21,7 +21,7 @@ MAY_IMPORT = {
     "tasks": {"models", "ops"},
     "api": {"geometry", "formats", "metrics", "models", "ops", "crowd"},
     "pages": {"geometry", "formats", "metrics", "models", "ops", "crowd"},
-    "management": {"geometry", "formats", "metrics", "demo", "models", "ops", "crowd"},
+    "management": {"geometry", "formats", "metrics", "vision", "demo", "models", "ops", "crowd"},
     "admin": {"models", "ops"},
 }
 FRAMEWORKS = {"django", "rest_framework", "celery", "drf_spectacular", "annotator"}
