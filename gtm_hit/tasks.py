@@ -16,6 +16,7 @@ from gtm_hit.ops.files import picture_cleanup, sources
 from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.layers import job as annotation_job
 from gtm_hit.ops.layers import unfinished
+from gtm_hit.ops.proposals import job as proposal_job
 from gtm_hit.ops.releases import releasing
 from gtm_hit.ops.work import assignments
 
@@ -25,6 +26,7 @@ OPERATIONS: dict[str, queue.Operation] = {
     Job.Kind.IMPORT_VIDEOS: job.run_videos,
     Job.Kind.IMPORT_ANNOTATIONS: annotation_job.run,
     Job.Kind.MAKE_RELEASE: releasing.run,
+    Job.Kind.PROPOSE: proposal_job.run,
     Job.Kind.REPLACE_CALIBRATION: calibration_job.run,
 }
 

@@ -7,6 +7,7 @@ from gtm_hit.models.calibration import Calibration
 from gtm_hit.models.campaign import Campaign, CampaignWorker
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
 from gtm_hit.models.job import Job
+from gtm_hit.models.proposal import PictureBoxes, Proposal, ProposalFrame, ProposalRun, Refusal
 from gtm_hit.models.release import Release
 from gtm_hit.models.work import Assignment, Batch, Worker
 
@@ -28,6 +29,11 @@ __all__ = [
     "Job",
     "Layer",
     "LayerFrame",
+    "PictureBoxes",
+    "Proposal",
+    "ProposalFrame",
+    "ProposalRun",
+    "Refusal",
     "Release",
     "Save",
     "Worker",

@@ -24,6 +24,7 @@ class Job(models.Model):
         IMPORT_ANNOTATIONS = "import_annotations", "import of annotations"
         REPLACE_CALIBRATION = "replace_calibration", "change of calibration"
         MAKE_RELEASE = "make_release", "release"
+        PROPOSE = "propose", "proposals of people"
 
     dataset = models.ForeignKey(
         Dataset,
