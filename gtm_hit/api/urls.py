@@ -7,7 +7,7 @@ from django.views.decorators.gzip import gzip_page
 from drf_spectacular.views import SpectacularAPIView
 
 # Importing it tells drf-spectacular about the tokens.
-from gtm_hit.api import calibration, jobs, releases, work
+from gtm_hit.api import calibration, jobs, proposals, releases, work
 from gtm_hit.api.common import schema  # noqa: F401
 from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, StaffSession
 from gtm_hit.api.common.docs import DocsView
@@ -18,6 +18,7 @@ from gtm_hit.api.workbench import frames, tutorial
 from gtm_hit.api.workbench.grids import GridView
 from gtm_hit.api.workbench.images import ImageView
 from gtm_hit.api.workbench.places import IN_LAYER, layer_start_place
+from gtm_hit.api.workbench.proposals import ProposalsView, RefusalsView
 from gtm_hit.api.workbench.rectangles import RectanglesView
 from gtm_hit.api.workbench.submission import SubmitView
 
@@ -32,6 +33,8 @@ assignment = [
     path("frames/<int:number>/", frames.FrameView.as_view()),
     path("frames/<int:number>/history/", frames.HistoryView.as_view()),
     path("rectangles/", RectanglesView.as_view()),
+    path("proposals/", gzip_page(ProposalsView.as_view())),
+    path("refusals/", RefusalsView.as_view()),
     path("submit/", SubmitView.as_view()),
 ]
 START: dict[str, Any] = {**IN_LAYER, "find": layer_start_place}
@@ -41,6 +44,8 @@ layer = [
     path("frames/<int:number>/", frames.FrameView.as_view(**IN_LAYER)),
     path("frames/<int:number>/history/", frames.HistoryView.as_view(**IN_LAYER)),
     path("rectangles/", RectanglesView.as_view(**IN_LAYER)),
+    path("proposals/", gzip_page(ProposalsView.as_view(**IN_LAYER))),
+    path("refusals/", RefusalsView.as_view(**IN_LAYER)),
 ]
 # The same for a part of a long layer: the workbench opens no more of it.
 one_part = [
@@ -49,6 +54,8 @@ one_part = [
     path("frames/<int:number>/", frames.FrameView.as_view(**IN_LAYER, schema=None)),
     path("frames/<int:number>/history/", frames.HistoryView.as_view(**IN_LAYER, schema=None)),
     path("rectangles/", RectanglesView.as_view(**IN_LAYER, schema=None)),
+    path("proposals/", gzip_page(ProposalsView.as_view(**IN_LAYER, schema=None))),
+    path("refusals/", RefusalsView.as_view(**IN_LAYER, schema=None)),
 ]
 learning = [
     path("scene/", gzip_page(tutorial.TutorialScene.as_view())),
@@ -64,6 +71,7 @@ one_layer: list[URLPattern | URLResolver] = [
     path("statistics/numbers.csv", statistics.StatisticsTable.as_view()),
     path("statistics/<slug:figure>.<slug:kind>", statistics.StatisticsFigure.as_view()),
     path("exports/", releases.Exports.as_view()),
+    path("missing/", proposals.MissingPeople.as_view()),
 ]
 one_dataset: list[URLPattern | URLResolver] = [
     path("", listing.OneDataset.as_view()),
@@ -80,6 +88,9 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("calibrations/versions/<int:number>/", calibration.OneVersion.as_view()),
     path("calibrations/<int:pk>/", calibration.OneCalibration.as_view()),
     path("calibrations/<int:pk>/confirm/", calibration.ConfirmCalibration.as_view()),
+    path("proposals/", proposals.Runs.as_view()),
+    path("proposals/<int:number>/", proposals.OneRun.as_view()),
+    path("proposals/<int:number>/layer/", proposals.RunLayer.as_view()),
     path("annotation-imports/", importing.AnnotationImports.as_view()),
     path("batches/", work.Batches.as_view()),
     path("link/", work.Link.as_view()),

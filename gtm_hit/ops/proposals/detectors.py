@@ -6,6 +6,8 @@ from django.conf import settings
 
 BUILT_IN = "built-in"
 NONE = "none"
+FILE = "file:"  # a path follows
+MODULE = "module:"  # a name follows
 
 
 def addresses() -> list[str]:

@@ -11,7 +11,7 @@ from django.core.exceptions import ValidationError
 from django.db import IntegrityError, transaction
 from django.utils.translation import gettext as _
 
-from gtm_hit.models import Annotation, Layer, Proposal, ProposalRun
+from gtm_hit.models import Annotation, Dataset, Layer, Proposal, ProposalRun
 from gtm_hit.ops.datasets import rows
 from gtm_hit.ops.datasets.annotations import ImportedFrame
 from gtm_hit.ops.layers import unfinished
@@ -21,13 +21,13 @@ THRESHOLD = 0.5  # of the score, from which on somebody is taken for real
 COLUMNS = ("proposal_frame__frame__number", "position", "height", "radius", "track")
 
 
-def check_name(run: ProposalRun, name: str) -> None:
+def check_name(dataset: Dataset, name: str) -> None:
     """Raises ProposalError for a name that no layer of the dataset can get."""
     try:
         Layer(name=name, kind=Layer.Kind.PROPOSAL).clean_fields(exclude=["dataset"])
     except ValidationError as error:
         raise ProposalError(" ".join(error.messages)) from error
-    if Layer.objects.filter(dataset=run.dataset_id, name=name).exists():
+    if Layer.objects.filter(dataset=dataset, name=name).exists():
         raise ProposalError(_("The layer %(name)s is there already; choose another name.") % {"name": name})
 
 
@@ -38,7 +38,7 @@ def make_layer(
     remember: Callable[[Layer], None] | None = None,
 ) -> Layer:
     """Everybody with at least this score, by tracks. `remember` is told in the transaction it appears in."""
-    check_name(run, name)
+    check_name(run.dataset, name)
     frames = list(_frames(run, threshold))
     if not frames:
         raise ProposalError(_("This run has not looked at any frame yet."))

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from django.contrib.auth.models import AbstractBaseUser
 from django.db import transaction
 
-from gtm_hit.models import Assignment, Frame, Layer, Refusal, Worker
+from gtm_hit.models import Frame, Layer, Refusal, Worker
 from gtm_hit.ops.frames.saving import Author
 from gtm_hit.ops.proposals.errors import ProposalError
 from gtm_hit.ops.work import assignments
@@ -19,12 +19,13 @@ MOST = 2000  # of one frame
 def refuse(layer: Layer, frame: Frame, position: int, author: Author, refused: bool = True) -> None:
     """Remember that nobody is there, or forget it; again: nothing changes.
 
-    Raises ReadOnly for a worker's layer that may not be changed now.
+    Of workers only the layer's own may, while they hold the batch: else ReadOnly is raised.
     """
     if not 0 <= position < layer.dataset.grid.count:
         raise ProposalError(f"position {position} is not on the grid")
     with transaction.atomic():
-        _require_editable(layer, author)
+        if isinstance(author, Worker):
+            assignments.require_editable(layer, assignments.locked_for_layer(layer), author)
         there = Refusal.objects.filter(layer=layer, frame=frame)
         if not refused:
             there.filter(position=position).delete()
@@ -32,11 +33,6 @@ def refuse(layer: Layer, frame: Frame, position: int, author: Author, refused: b
         if there.count() >= MOST:
             raise ProposalError(f"more than {MOST} refusals in one frame")
         Refusal.objects.get_or_create(layer=layer, frame=frame, position=position, defaults=_by(author))
-
-
-def _require_editable(layer: Layer, author: Author) -> None:
-    assignment: Assignment | None = assignments.locked_for_layer(layer)
-    assignments.require_editable(layer, assignment, author if isinstance(author, Worker) else None)
 
 
 def _by(author: Author) -> dict[str, object]:

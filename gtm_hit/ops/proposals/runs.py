@@ -89,7 +89,7 @@ def run_of(dataset: Dataset, pk: int) -> ProposalRun | None:
 
 
 def summaries(dataset: Dataset) -> list[RunSummary]:
-    """The newest first, with a fixed number of queries."""
+    """The newest first."""
     found = list(
         runs(dataset).annotate(
             looked=Count("frames"), average=Avg("frames__seconds", filter=Q(frames__seconds__gt=0))
@@ -109,17 +109,18 @@ def summaries(dataset: Dataset) -> list[RunSummary]:
             by_run.get(run.pk, none)["people"],
             by_run.get(run.pk, none)["tracks"],
             run.average,
-            _alarms(run),
+            alarms(run),
             fits(run, calibration),
         )
         for run in found
     ]
 
 
-def _alarms(run: ProposalRun) -> dict[str, int]:
+def alarms(run: ProposalRun) -> dict[str, int]:
+    """Frames in which each camera disagreed with all others."""
     counts: dict[str, int] = {}
-    for alarms in run.frames.exclude(suspicious=[]).values_list("suspicious", flat=True):
-        for alarm in alarms:
+    for suspicious in run.frames.exclude(suspicious=[]).values_list("suspicious", flat=True):
+        for alarm in suspicious:
             counts[alarm["camera"]] = counts.get(alarm["camera"], 0) + 1
     return counts
 
