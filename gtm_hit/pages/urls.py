@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from django.urls import URLPattern, URLResolver
 
-from gtm_hit.pages import api_tokens, calibration, home, jobs, releases
+from gtm_hit.pages import api_tokens, calibration, home, jobs, proposals, releases
 from gtm_hit.pages.datasets import importing as dataset_imports
 from gtm_hit.pages.datasets import listing as datasets
 from gtm_hit.pages.layers import importing as annotation_imports
@@ -17,6 +17,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *layers.urlpatterns,
     *annotation_imports.urlpatterns,
     *releases.urlpatterns,
+    *proposals.urlpatterns,
     *statistics.urlpatterns,
     *comparing.urlpatterns,
     *text_files.urlpatterns,
