@@ -268,13 +268,17 @@ def _named(places: Places, following: Ids) -> Ids:
 
 
 def _certainty(steps: _Steps, prices: Floats, following: Ids, count: int) -> Floats:
-    """Of the step that leads to each row, (N,): 1 where no other could, 0.5 where two are equal."""
+    """Of the step that leads to each row, (N,): 1 where nobody else could come there, 0.5 where two could."""
+    chain = np.zeros(count, dtype=np.int64)
+    for number, rows in enumerate(_chains(following)):
+        chain[rows] = number
     weight = np.exp(-np.clip(prices, 0.0, 50.0))
-    total = np.bincount(steps.second, weight, count) + np.exp(-5.0)
-    result = np.ones(count)
     taken = following[steps.first] == steps.second
+    rival = chain[steps.first] != chain[steps.second]
+    others = np.bincount(steps.second[rival], weight[rival], count) + np.exp(-5.0)
+    result = np.ones(count)
     rows = steps.second[taken]
-    result[rows] = weight[taken] / total[rows]
+    result[rows] = weight[taken] / (weight[taken] + others[rows])
     return result
 
 

@@ -71,6 +71,19 @@ export class Api {
     return this._json("POST", "rectangles/", { people });
   }
 
+  /** @returns {Promise<import("./answers.js").ProposalsAnswer>} */
+  proposals() {
+    return this._json("GET", "proposals/");
+  }
+
+  /**
+   * Nobody is where somebody was proposed; `refused` false: perhaps after all.
+   * @param {{frame: number, position: number, refused: boolean}} body
+   */
+  refuse(body) {
+    return this._json("POST", "refusals/", body);
+  }
+
   /** @returns {Promise<import("./answers.js").SubmitAnswer>} */
   submit() {
     return this._json("POST", "submit/", {});

@@ -96,7 +96,7 @@ export async function buildWorkbench(root, session, { mode, home }) {
   const layout = new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
   const views = new Views({ panes, layout, settings, notices });
   const identity = new IdentityActions({ ...session, panes, notices, guard });
-  fillTable(actions, session, page, {
+  const intents = fillTable(actions, session, page, {
     ...placing,
     select,
     playback,
@@ -107,6 +107,7 @@ export async function buildWorkbench(root, session, { mode, home }) {
   actions.use(chooseViews(root, views, page));
   showPaths(session.store, page);
   showFilmstrip(timeline, notices, { ...session, navigation, panes, settings });
+  if (scene.proposed) propose(session, { panes, notices, panel: panel.element, perform, ...placing }, actions, intents);
   if (mode !== "tutorial") addForWork(panel, session, page, { actions, perform, identity, heads, guard });
   watch(session, panes, notices);
   navigation.carryInto(store.current);
@@ -142,6 +143,23 @@ function fillTable(actions, session, page, parts) {
   actions.use(new UndoActions({ ...session, ...page, ...parts }).table());
   actions.use(new TimeActions({ ...session, ...page, ...parts }).table());
   actions.use(new OneByOne({ ...session, ...page, ...parts, intents, people, otherwise: () => keys.escape() }).table());
+  return intents;
+}
+
+/**
+ * People whom programs propose, drawn over the views; without the server the page works as if there were none.
+ * @param {Session} session
+ * @param {Omit<import("./proposals/start.js").Page, "refused"> & Pick<Placing, "guard">} page
+ * @param {Actions} actions @param {AnnotatingIntents} intents
+ */
+async function propose(session, { guard, ...page }, actions, intents) {
+  /** @type {() => Promise<typeof import("./proposals/start.js")|null>} */
+  const part = fetched(page.notices, import.meta.resolve("./proposals/start.js"));
+  const started = await part();
+  const made = await started?.startProposals(session, { ...page, refused: () => guard.refused() }).catch(console.warn);
+  if (!made) return;
+  intents.proposals = made;
+  actions.use(made.table());
 }
 
 /**

@@ -93,5 +93,10 @@ def test_a_step_that_two_could_have_taken_is_less_certain() -> None:
     assert close.certainty[close.frames == 3].max() < alone.certainty[alone.frames == 3].min()
 
 
+def test_somebody_alone_is_certain_whether_they_stand_or_walk() -> None:
+    for pace in (0.0, 0.5):
+        assert link(walkers(line(range(6), 0, 0, pace, 0))).certainty.min() > 0.95
+
+
 def test_an_empty_batch_has_no_tracks() -> None:
     assert len(link(walkers()).tracks) == 0
