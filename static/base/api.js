@@ -71,17 +71,12 @@ export class Api {
     return this._json("POST", "rectangles/", { people });
   }
 
-  /** @returns {Promise<import("./answers.js").ProposalsAnswer>} */
-  proposals() {
-    return this._json("GET", "proposals/");
-  }
-
   /**
-   * Nobody is where somebody was proposed; `refused` false: perhaps after all.
-   * @param {{frame: number, position: number, refused: boolean}} body
+   * Whatever parts ask for that are fetched later.
+   * @param {string} method @param {string} path @param {unknown} [body]
    */
-  refuse(body) {
-    return this._json("POST", "refusals/", body);
+  ask(method, path, body) {
+    return this._json(method, path, body);
   }
 
   /** @returns {Promise<import("./answers.js").SubmitAnswer>} */

@@ -32,8 +32,6 @@ export class AnnotatingIntents extends Intents {
     this._enlarge = enlarge;
     /** @type {Placed|null} */
     this._placed = null;
-    /** @type {import("./proposals/proposal_actions.js").ProposalActions|null} */
-    this.proposals = null; // those who are proposed, where somebody is
   }
 
   /** @override */
@@ -48,7 +46,6 @@ export class AnnotatingIntents extends Intents {
 
   /** @override @param {Pane} pane @param {XY} at @param {MouseEvent} event */
   place(pane, at, event) {
-    if (this.proposals?.take(pane, at)) return;
     const { selection } = this._store;
     this._placed = this._moving.place(pane, at, event) ? { pane, time: event.timeStamp, selection } : null;
   }
@@ -80,13 +77,11 @@ export class AnnotatingIntents extends Intents {
   /** @override @param {Pane} pane @param {XY} at @param {Annotation|null} over who is under the pointer */
   hover(pane, at, over) {
     this._ghost.hover(pane, at, over);
-    this.proposals?.hover(pane, at);
   }
 
   /** @override */
   leave() {
     this._ghost.hide();
-    this.proposals?.leave();
   }
 
   /**

@@ -31,7 +31,7 @@ function proposed(place, values = {}) {
 function page(store, lists, refused = []) {
   const told = [];
   const history = new History(store);
-  const api = { refuse: async (body) => void told.push(body) };
+  const api = { ask: async (_method, _path, body) => void told.push(body) };
   const answer = {
     run: 1,
     threshold: 0.5,
@@ -132,11 +132,11 @@ test("a refusal is remembered on the server, and undo takes it back there", asyn
 test("a refusal the server cannot be told of is told with the next step", async () => {
   const list = [proposed([10, 10]), proposed([30, 10])];
   const { proposals, told } = page(frames([]), [list]);
-  const { refuse } = proposals._api;
-  proposals._api.refuse = async () => Promise.reject(new Error("away"));
+  const { ask } = proposals._api;
+  proposals._api.ask = async () => Promise.reject(new Error("away"));
   proposals.refuse(list[0]);
   await settled();
-  proposals._api.refuse = refuse;
+  proposals._api.ask = ask;
   proposals.refuse(list[1]);
   await settled();
   assert.equal(told.length, 2);

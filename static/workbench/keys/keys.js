@@ -42,11 +42,6 @@ const TABLE = [
   ["validateAll", "people", ["Shift+Enter"], () => gettext("validate everybody: all yellow people stand right")],
   ["round", "people", ["a"], () => gettext("one by one, close up: right click places and goes on, Enter: it is right")],
   ["roundBack", "people", ["b"], () => gettext("the person before, when one by one")],
-  ["acceptAll", "people", ["o"], () => gettext("accept all proposals that are taken for real")],
-  ["acceptOne", "people", ["Shift+o"], () => gettext("accept the proposal under the pointer, or gone to")],
-  ["refuseOne", "people", ["Shift+r"], () => gettext("refuse it: nobody is there")],
-  ["nextProposal", "people", ["Shift+f"], () => gettext("go to the next proposal, the most doubtful first")],
-  ["doubtful", "people", ["Shift+a"], () => gettext("one by one, close up, through the doubtful proposals")],
   ["rename", "identity", ["r"], () => gettext("give the person another number")],
   ["split", "identity", ["x"], () => gettext("split: from here on it is somebody else, with a new number")],
   ["join", "identity", ["Shift+j"], () => gettext("join: another number is the same person")],
@@ -91,6 +86,14 @@ const TABLE = [
   ["controls", "other", ["F6"], () => gettext("let Tab move between the buttons; Escape returns to annotating")],
   ["escape", "other", ["Escape"], () => gettext("leave zoom, then let go of the person")],
 ];
+
+/**
+ * Rows of a part that is fetched later; whoever adds them tells the keyboard.
+ * @param {typeof TABLE} rows
+ */
+export function addKeys(rows) {
+  TABLE.push(...rows);
+}
 
 /** Who counts on finding them: the way out, and digits that mean views. */
 const FIXED = ["toggleView", "controls", "escape"];

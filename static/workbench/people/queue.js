@@ -12,8 +12,8 @@ export class Queue {
     this._store = store;
     /** @type {number[]} */
     this._order = [];
-    /** @type {((one: Annotation) => number)|null} who is more doubtful comes earlier */
-    this.doubt = null;
+    /** @type {((persons: number[]) => number|undefined)|null} who comes before all others, if somebody does */
+    this.first = null;
     store.on("frame", () => (this._order = []));
   }
 
@@ -42,9 +42,8 @@ export class Queue {
 
   /** @param {number[]} persons */
   _nearest(persons) {
-    const doubts = persons.map((one) => this.doubt?.(this._store.marked(one)) ?? 0);
-    const most = Math.max(...doubts);
-    if (most > 0) return persons[doubts.indexOf(most)];
+    const first = this.first?.(persons);
+    if (first !== undefined) return first;
     const last = this._order.map((one) => this._store.person(one)).findLast(Boolean);
     if (!last) return persons[0];
     const from = this._scene.metres(last.position);

@@ -169,7 +169,7 @@ export class Proposals extends Emitter {
     try {
       for (let next = this._untold(); next; next = this._untold()) {
         const { key, place, refused } = next;
-        await this._api.refuse({ ...place, refused });
+        await this._api.ask("POST", "refusals/", { ...place, refused });
         if (refused) this._kept.set(key, place);
         else this._kept.delete(key);
       }

@@ -1,39 +1,93 @@
 /**
  * The part itself, fetched by pages of frames that somebody is proposed in.
  * @typedef {import("../../saving/session.js").Session} Session
+ * @typedef {import("../../truth/store.js").Store} Store
+ * @typedef {import("../../views/intents.js").Intents} Intents
  * @typedef {object} Page
+ * @property {import("../settings.js").Settings} settings
  * @property {import("../../views/panes.js").Panes} panes
  * @property {import("../../base/notices.js").Notices} notices
  * @property {HTMLElement} panel
  * @property {(id: string) => void} perform
- * @property {() => boolean} refused
+ * @property {import("../placing/guard.js").Guard} guard
  * @property {import("../people/queue.js").Queue} queue
+ * @property {import("../actions.js").Actions} actions
+ * @property {Intents} intents
  */
+import { gettext } from "../../base/messages.js";
+import { addKeys } from "../keys/keys.js";
 import { ProposalActions } from "./proposal_actions.js";
 import { ProposalPanel } from "./proposal_panel.js";
 import { Proposals } from "./proposals.js";
 
 const STORED = "gtm-workbench-proposalThreshold";
 
-/**
- * @param {Session} session @param {Page} page
- * @returns {Promise<ProposalActions>}
- */
-export async function startProposals(session, { panes, notices, panel, perform, refused, queue }) {
-  const answer = await session.api.proposals();
+/** @type {Parameters<typeof addKeys>[0]} */
+const KEYS = [
+  ["acceptAll", "people", ["o"], () => gettext("accept all proposals that are taken for real")],
+  ["acceptOne", "people", ["Shift+o"], () => gettext("accept the proposal under the pointer, or gone to")],
+  ["refuseOne", "people", ["Shift+r"], () => gettext("refuse it: nobody is there")],
+  ["nextProposal", "people", ["Shift+f"], () => gettext("go to the next proposal, the most doubtful first")],
+  ["doubtful", "people", ["Shift+a"], () => gettext("one by one, close up, through the doubtful proposals")],
+];
+
+/** @param {Session} session @param {Page} page */
+export async function startProposals(session, page) {
+  /** @type {import("../../base/answers.js").ProposalsAnswer|null} */
+  const answer = await session.api.ask("GET", "proposals/").catch(console.warn);
+  if (!answer) return; // who is proposed is a help, not a condition
+  const { panes, notices, panel, perform, guard, settings, actions } = page;
   const proposals = new Proposals(session, answer, stored() ?? answer.threshold);
-  const actions = new ProposalActions({
+  const acting = new ProposalActions({
     proposals,
     store: session.store,
     panes,
     notices,
-    refused,
+    refused: () => guard.refused(),
     round: () => perform("round"),
   });
-  const doubts = new Map(answer.frames.flatMap(({ people }) => people).map((one) => [one.position, one.doubt]));
-  queue.doubt = ({ position }) => doubts.get(position) ?? 0;
+  actions.use(acting.table());
+  addKeys(KEYS);
+  settings.set("keys", settings.get("keys")); // the keyboard learns them
+  listen(page.intents, acting);
+  doubtfulFirst(page.queue, session.store, answer);
   panel.append(new ProposalPanel({ proposals, perform, remember }).element);
-  return actions;
+}
+
+/**
+ * The pointer means proposals first: a click on the feet of one takes them, and over one stands what speaks for it.
+ * @param {Intents} intents @param {ProposalActions} acting
+ */
+function listen(intents, acting) {
+  const place = intents.place.bind(intents);
+  const hover = intents.hover.bind(intents);
+  const leave = intents.leave.bind(intents);
+  intents.place = (pane, at, event) => acting.take(pane, at) || place(pane, at, event);
+  intents.hover = (pane, at, over) => {
+    hover(pane, at, over);
+    acting.hover(pane, at);
+  };
+  intents.leave = () => {
+    leave();
+    acting.leave();
+  };
+}
+
+/**
+ * Of the people still to be looked at those come first whose proposals are most doubtful.
+ * @param {import("../people/queue.js").Queue} queue @param {Store} store
+ * @param {import("../../base/answers.js").ProposalsAnswer} answer
+ */
+function doubtfulFirst(queue, store, { frames }) {
+  const doubts = new Map(
+    frames.map(({ number, people }) => [number, new Map(people.map(({ position, doubt }) => [position, doubt]))]),
+  );
+  /** @param {number} person */
+  const doubt = (person) => doubts.get(store.current)?.get(store.marked(person).position) ?? 0;
+  queue.first = (persons) => {
+    const [most] = [...persons].sort((one, other) => doubt(other) - doubt(one));
+    return doubt(most) > 0 ? most : undefined;
+  };
 }
 
 /** @returns {number|null} */
