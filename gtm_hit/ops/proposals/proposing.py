@@ -20,7 +20,7 @@ from gtm_hit.vision.people import FrameProposals
 
 LOOKING = "looking for people"
 GROUP = 40  # frames that share a background
-SAME_SIZE = 0.01  # metres
+SAME_SIZE = 0.2  # metres: nearer to the usual person nobody has a size of their own
 
 
 class Looker(Protocol):
