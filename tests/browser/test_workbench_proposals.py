@@ -65,35 +65,35 @@ def count(made: Bench) -> str:
 
 
 def test_one_key_accepts_all_right_ones_and_undo_takes_them_back(proposed: Bench) -> None:
-    assert count(proposed) == "7 to accept, 2 doubtful"
+    assert count(proposed) == "Proposed: 7 to accept, 2 doubtful"
     assert proposed.rows() == []
     proposed.press("o")
     assert len(proposed.rows()) == PEOPLE - 1
     assert {row.origin for row in proposed.stored()} == {"proposed"}
     proposed.press("Control+z")
     assert proposed.rows() == []
-    assert count(proposed) == "7 to accept, 2 doubtful"
+    assert count(proposed) == "Proposed: 7 to accept, 2 doubtful"
 
 
 def test_the_slider_says_who_is_taken_for_real(proposed: Bench) -> None:
     slider = proposed.page.locator(".proposals input[type=range]")
     slider.fill("0.35")
-    assert count(proposed) == "8 to accept, 1 doubtful"
+    assert count(proposed) == "Proposed: 8 to accept, 1 doubtful"
     proposed.open()
     expect(proposed.page.locator(".proposals output")).to_have_text("35 %")
 
 
 def test_the_most_doubtful_is_gone_to_and_refused_for_good(proposed: Bench) -> None:
     proposed.press("Shift+f", "Shift+r")
-    assert count(proposed) == "7 to accept, 1 doubtful"
+    assert count(proposed) == "Proposed: 7 to accept, 1 doubtful"
     expect(
         proposed.page.locator(".notices, [role=status]").filter(has_text="Nobody there").first
     ).to_be_visible()
     ready(proposed)
-    assert count(proposed) == "7 to accept, 1 doubtful"
+    assert count(proposed) == "Proposed: 7 to accept, 1 doubtful"
     assert Refusal.objects.count() == 1
     proposed.press("Control+z")
-    assert count(proposed) == "7 to accept, 2 doubtful"
+    assert count(proposed) == "Proposed: 7 to accept, 2 doubtful"
 
 
 def test_the_pointer_shows_the_evidence_and_a_click_on_the_feet_accepts(proposed: Bench) -> None:
@@ -112,7 +112,7 @@ def test_doubtful_ones_come_close_up_the_most_doubtful_first(proposed: Bench) ->
     proposed.press("Delete")  # nobody is there
     proposed.press("Enter")  # somebody is
     assert len(proposed.rows()) == PEOPLE
-    assert count(proposed) == "nobody is left"
+    assert count(proposed) == "Proposed: nobody is left"
     proposed.saved()
     assert {row.state for row in proposed.stored()} == {"validated"}
     assert Refusal.objects.count() == 1
@@ -145,7 +145,7 @@ class Annotator:
         """Accept, look at the doubtful ones (here: the lower of two scores is nobody), go on."""
         for index in range(FRAMES):
             expect(self.made.page.locator(".place")).to_have_text(f"Frame {index + 1} of {FRAMES}")
-            if not self.text(".proposals .details").startswith("0"):
+            if not self.text(".proposals .details").startswith(("Proposed: 0", "Proposed: nobody")):
                 self.press("o")
             if "0 doubtful" not in self.text(".proposals .details"):
                 self.press("Shift+a")

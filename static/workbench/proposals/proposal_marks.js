@@ -42,7 +42,7 @@ function item(proposals, one, { view, transform }) {
   const style = styleOf(one, proposals.threshold, focused);
   const [first, last] = [transform.toPane(seen.xmin, seen.ymin), transform.toPane(seen.xmax, seen.ymax)];
   const box = { xmin: first.x, ymin: first.y, xmax: last.x, ymax: last.y };
-  const label = view.index === null ? "" : percent(one.score);
+  const label = view.index !== null && (focused || one.score < SURE) ? percent(one.score) : ""; // the sure ones are many
   return {
     id: `proposal ${one.id}`,
     what: one,

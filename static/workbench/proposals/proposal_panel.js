@@ -28,7 +28,7 @@ export class ProposalPanel {
       oninput: () => this._choose(),
       onchange: () => this._slider.blur(), // arrow keys move people, not the slider
     });
-    this._slider.style.width = "100%";
+    Object.assign(this._slider.style, { flex: "1 1 6rem", minWidth: "4rem" });
     const label = element(
       "label",
       { className: "details" },
@@ -46,11 +46,11 @@ export class ProposalPanel {
     this.element = element(
       "section",
       { className: "proposals", "aria-label": gettext("Proposals") },
-      element("h2", {}, gettext("Proposals")),
       this._count,
       label,
       tools,
     );
+    Object.assign(label.style, { display: "flex", gap: "0.5rem", alignItems: "center" });
     proposals.on("change", () => this._tell());
     this._tell();
   }
@@ -63,11 +63,11 @@ export class ProposalPanel {
 
   _tell() {
     const { likely, doubtful } = this._proposals;
-    const words = gettext("{likely} to accept, {doubtful} doubtful", {
+    const words = gettext("Proposed: {likely} to accept, {doubtful} doubtful", {
       likely: likely.length,
       doubtful: doubtful.length,
     });
-    setText(this._count, likely.length + doubtful.length ? words : gettext("nobody is left"));
+    setText(this._count, likely.length + doubtful.length ? words : gettext("Proposed: nobody is left"));
   }
 }
 
