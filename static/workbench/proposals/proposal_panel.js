@@ -10,6 +10,7 @@ import { titleFor } from "../keys/keys.js";
 import { percent } from "./proposal_marks.js";
 
 const STEP = 0.05;
+const TIGHT = { minHeight: "0", padding: "0.3rem 1.2rem 0" };
 
 /** Under the list of people: how many are proposed, from which score on they are taken for real, buttons. */
 export class ProposalPanel {
@@ -50,7 +51,9 @@ export class ProposalPanel {
       label,
       tools,
     );
-    Object.assign(label.style, { display: "flex", gap: "0.5rem", alignItems: "center" });
+    Object.assign(label.style, { ...TIGHT, display: "flex", gap: "0.5rem", alignItems: "center", borderTop: "0" });
+    Object.assign(this._count.style, TIGHT);
+    this.element.style.flex = "none"; // the list of people gives way
     proposals.on("change", () => this._tell());
     this._tell();
   }
