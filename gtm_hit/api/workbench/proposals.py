@@ -17,7 +17,6 @@ from gtm_hit.api.workbench.places import PlacedView
 from gtm_hit.ops.frames.neighbours import Neighbours, neighbours
 from gtm_hit.ops.proposals import reading, refusals
 from gtm_hit.ops.proposals.errors import ProposalError
-from gtm_hit.ops.proposals.layers import THRESHOLD
 
 
 class EvidenceSerializer(serializers.Serializer[Any]):
@@ -73,7 +72,7 @@ class ProposalsView(PlacedView):
         return Response(
             {
                 "run": found.run.pk if found.run else None,
-                "threshold": THRESHOLD,
+                "threshold": reading.CERTAIN,
                 "frames": [asdict(frame) for frame in found.frames],
             }
         )

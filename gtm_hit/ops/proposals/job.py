@@ -55,7 +55,7 @@ def start_by_itself(dataset: Dataset) -> Job | None:
         return start(dataset, Order())
     if run.method not in METHODS or not _left(run):
         return None  # a file says nothing about new frames
-    return start(dataset, Order(run.method, run.parameters["detector"]))
+    return start(dataset, Order(run.parameters.get("asked", run.method), run.parameters["detector"]))
 
 
 def _left(run: ProposalRun) -> bool:
@@ -72,8 +72,8 @@ def do(
 ) -> tuple[ProposalRun, Proposed]:
     """Look at every frame that is still to be looked at in this way. Raises ProposalError."""
     looker = looking.looker(dataset, order.method, order.detector)
-    told = {**looker.settings, "detector": order.detector}
-    run = runs.find_or_make(dataset, order.method, looker.model, told, user)
+    told = {**looker.settings, "asked": order.method, "detector": order.detector}
+    run = runs.find_or_make(dataset, looker.method, looker.model, told, user)
     if order.use:
         runs.use(run)
     return run, propose(run, looker, progress)

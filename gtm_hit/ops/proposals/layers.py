@@ -9,6 +9,7 @@ from itertools import count
 import numpy as np
 from django.core.exceptions import ValidationError
 from django.db import IntegrityError, transaction
+from django.db.models import Q
 from django.utils.translation import gettext as _
 
 from gtm_hit.models import Annotation, Dataset, Layer, Proposal, ProposalRun
@@ -18,6 +19,7 @@ from gtm_hit.ops.layers import unfinished
 from gtm_hit.ops.proposals.errors import ProposalError
 
 THRESHOLD = 0.5  # of the score, from which on somebody is taken for real
+ALONE = 0.75  # the same for somebody whom no other frame confirms, where there are other frames
 COLUMNS = ("proposal_frame__frame__number", "position", "height", "radius", "track")
 
 
@@ -61,7 +63,9 @@ def _frames(run: ProposalRun, threshold: float) -> Iterator[ImportedFrame]:
     largest = max(people.order_by().values_list("track", flat=True).distinct(), key=_number, default=0)
     untracked = count(_number(largest) + 1)
     found: dict[int, list[tuple[int, int, float, float]]] = defaultdict(list)
-    for number, position, height, radius, track in people.filter(score__gte=threshold).values_list(*COLUMNS):
+    confirmed = Q(track__isnull=False) if run.frames.count() > 1 else Q()
+    taken = people.filter(Q(score__gte=threshold) & (confirmed | Q(score__gte=max(ALONE, threshold))))
+    for number, position, height, radius, track in taken.values_list(*COLUMNS):
         person = next(untracked) if track is None else track
         found[number].append((person, position, _nan(height), _nan(radius)))
     for number in run.frames.order_by("frame__number").values_list("frame__number", flat=True):

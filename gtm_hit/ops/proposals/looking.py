@@ -10,8 +10,9 @@ from gtm_hit.ops.proposals.proposing import Looker
 
 
 class NamedLooker(Looker, Protocol):
-    """`model` and `settings` are part of what tells runs apart."""
+    """What tells runs apart: the method that could be used, the detector, the settings."""
 
+    method: str
     model: str
     settings: dict[str, Any]
 

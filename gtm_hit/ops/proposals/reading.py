@@ -18,6 +18,7 @@ from gtm_hit.vision.doubt import doubt
 from gtm_hit.vision.link import FILLED, NOBODY, Floats, Ids, Places, for_pace, link
 from gtm_hit.vision.people import Evidence
 
+CERTAIN = 0.7  # of the score: below, somebody should look before it is accepted
 SAME = 0.35  # metres between an annotation and the proposal of the same person
 
 

@@ -114,6 +114,14 @@ def test_a_layer_has_only_whom_the_score_says(dataset: Dataset) -> None:
     assert made.layer_frames.filter(done=True).count() == 8
 
 
+def test_somebody_no_other_frame_confirms_needs_a_higher_score(dataset: Dataset) -> None:
+    run = make_run(dataset)
+    people = {**walk(NUMBERS), 0: [person(0, 0, 0.6), person(3, 3, 0.6), person(-3, 3, 0.8)]}
+    propose(run, Watcher(dataset, people))
+    made = layers.make_layer(run, "sure")
+    assert Annotation.objects.filter(layer=made, frame__number=0).count() == 2
+
+
 def test_a_name_that_is_taken_makes_no_layer(walked: Dataset) -> None:
     make_layer(walked, "taken")
     for name in ("taken", "no spaces", ""):

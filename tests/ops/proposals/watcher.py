@@ -22,6 +22,7 @@ def person(x: float, y: float, score: float = 0.9) -> Proposal:
 class Watcher:
     """`people` by frame number; what it looked at is in `looked`."""
 
+    method = "cover"
     model = "watcher-1"
     settings: dict[str, Any] = {}
 
