@@ -1,4 +1,6 @@
-"""How many actions a person and frame takes at the workbench: `python -m benchmarks.effort [frames [part of a name]]`.
+"""How many actions a person and frame takes at the workbench: `python -m benchmarks.effort [frames [plan]]`.
+
+A plan is named by a part of its name; all of them run unless one is named.
 
 A scripted annotator (effort.js) annotates real people, the positions of ../shared/data/wildtrack, at the
 real workbench in Chromium, until everybody is within 5 cm of the truth and validated. It decides perfectly;
@@ -147,7 +149,7 @@ def annotate(browser: Browser, frames: list[dict[int, int]], plan: dict[str, Any
 
 
 def proposals(frames: list[dict[int, int]]) -> dict[str, Any]:
-    """As exact as those of pictures are: 4.5 cm off on average, one in a hundred missed, one in a hundred nobody."""
+    """As exact as those of pictures: 4.5 cm off, one in a hundred missed, one in a hundred nobody."""
     rng = np.random.default_rng(SEED)
     numbers = count()
     found = []
