@@ -24,6 +24,7 @@ class FitSettings:
     aside: float = 0.025  # how far a detector's box is off, as a share of its height: its middle,
     bottom: float = 0.030  # its feet
     top: float = 0.030  # and its head
+    seen: float = 0.020  # and how far the middle of its foreground is
     tolerance: float = 2.0  # from so many times that much on, an edge loses its say: hidden legs
     spread: float = 0.10  # metres, by which bodies of one kind differ in height
 
@@ -34,26 +35,35 @@ def fit(
     boxes: Mapping[str, Floats],
     cameras: Mapping[str, Camera],
     settings: FitSettings,
+    middles: Mapping[str, Floats] | None = None,
 ) -> tuple[Floats, Floats]:
     """Places and heights (N, 3), and how sure each place is: its covariance (N, 2, 2).
 
     start : (N, 3) x, y, height
     usual : (N,) the height each is expected to have
     boxes : per camera (N, 4), NaN where a body has none
+    middles : per camera (N,), where the background shows a body's middle; NaN where it does not
     """
     bodies = start.copy()
+    said = {name: _edges_said(found, cameras[name], settings) for name, found in boxes.items()}
+    for name, middle in (middles or {}).items():
+        said.setdefault(name, _nothing_said(len(start), settings))
+        said[name][0][:, 3] = middle
     for _ in range(STEPS):
         normal, slope = _prior(bodies, usual, settings)
-        for name, found in boxes.items():
-            rows = np.flatnonzero(np.isfinite(found[:, 0]))
+        for name, (edges, spread) in said.items():
+            rows = np.flatnonzero(np.isfinite(edges).any(axis=1))
             if len(rows):
-                _add_view(bodies[rows], found[rows], cameras[name], settings, rows, normal, slope)
+                view = _View(cameras[name], edges[rows], spread[rows])
+                more_normal, more_slope = view.equations(bodies[rows], settings)
+                normal[rows] += more_normal
+                slope[rows] += more_slope
         step = np.linalg.solve(normal, slope[..., None])[..., 0]
         length = np.hypot(step[:, 0], step[:, 1])
         bodies += step * np.minimum(1.0, FURTHEST / np.maximum(length, 1e-9))[:, None]
         bodies[:, 2] = np.clip(bodies[:, 2], 0.5, 2.2)
-    spread: Floats = np.linalg.inv(normal).astype(np.float64)
-    return bodies, spread[:, :2, :2]
+    covariance: Floats = np.linalg.inv(normal).astype(np.float64)
+    return bodies, covariance[:, :2, :2]
 
 
 def _prior(bodies: Floats, usual: Floats, s: FitSettings) -> tuple[Floats, Floats]:
@@ -63,38 +73,47 @@ def _prior(bodies: Floats, usual: Floats, s: FitSettings) -> tuple[Floats, Float
     return normal, slope
 
 
-def _add_view(
-    bodies: Floats,
-    found: Floats,
-    camera: Camera,
-    s: FitSettings,
-    rows: NDArray[np.int64],
-    normal: Floats,
-    slope: Floats,
-) -> None:
-    """Add what one view says about those bodies that it boxed to the rows of the equations."""
-    expected = [_edges(bodies, camera, s)]
-    for axis in range(3):
-        moved = bodies.copy()
-        moved[:, axis] += NUDGE
-        expected.append(_edges(moved, camera, s))
-    seen, tall = expected[0]
-    spread = np.array([s.aside, s.bottom, s.top]) * tall[:, None]
+@dataclass(frozen=True, eq=False)
+class _View:
+    """What one camera says of some bodies, (N, 4) pixels: middle, bottom and top of the box, middle of the
+    foreground; NaN for nothing."""
+
+    camera: Camera
+    edges: Floats
+    spread: Floats  # as shares of the bodies' heights
+
+    def equations(self, bodies: Floats, s: FitSettings) -> tuple[Floats, Floats]:
+        """Normal matrices (N, 3, 3) and slopes (N, 3) for the bodies' x, y and height."""
+        seen, tall = _edges(bodies, self.camera, s)
+        slopes = []
+        for axis in range(3):
+            moved = bodies.copy()
+            moved[:, axis] += NUDGE
+            slopes.append((_edges(moved, self.camera, s)[0] - seen) / NUDGE)
+        spread = self.spread * tall[:, None]
+        off, turn = (self.edges - seen) / spread, np.stack(slopes, axis=-1) / spread[..., None]
+        weight = np.where(np.isfinite(off), 1 / (1 + (off / s.tolerance) ** 2), 0.0)
+        off, turn = np.nan_to_num(off), np.nan_to_num(turn)
+        normal = np.einsum("nea,neb,ne->nab", turn, turn, weight)
+        return normal, np.einsum("nea,ne,ne->na", turn, off, weight)
+
+
+def _edges_said(found: Floats, camera: Camera, s: FitSettings) -> tuple[Floats, Floats]:
+    edges, spread = _nothing_said(len(found), s)
     said = np.column_stack(((found[:, 0] + found[:, 2]) / 2, found[:, 3], found[:, 1]))
-    slopes = np.stack([(moved - seen) / NUDGE for moved, _ in expected[1:]], axis=-1)  # (N, 3 edges, 3)
-    off = (said - seen) / spread
-    weight = 1 / (1 + (off / s.tolerance) ** 2)
-    weight *= _tells(found, camera) & np.isfinite(off)
-    off, slopes = np.nan_to_num(off), np.nan_to_num(slopes / spread[..., None])
-    normal[rows] += np.einsum("nea,neb,ne->nab", slopes, slopes, weight)
-    slope[rows] += np.einsum("nea,ne,ne->na", slopes, off, weight)
+    edges[:, :3] = np.where(_tells(found, camera), said, np.nan)
+    return edges, spread
+
+
+def _nothing_said(count: int, s: FitSettings) -> tuple[Floats, Floats]:
+    return np.full((count, 4), np.nan), np.tile([s.aside, s.bottom, s.top, s.seen], (count, 1))
 
 
 def _edges(bodies: Floats, camera: Camera, s: FitSettings) -> tuple[Floats, Floats]:
-    """Middle, bottom and top of the boxes expected, (N, 3) pixels, and their heights (N,)."""
+    """Middle, bottom, top and again middle of the boxes expected, (N, 4) pixels, and their heights (N,)."""
     whole = body_boxes(camera, bodies[:, :2], s.radius, bodies[:, 2]).whole
     middle = (whole[:, 0] + whole[:, 2]) / 2
-    return np.column_stack((middle, whole[:, 3], whole[:, 1])), whole[:, 3] - whole[:, 1]
+    return np.column_stack((middle, whole[:, 3], whole[:, 1], middle)), whole[:, 3] - whole[:, 1]
 
 
 def _tells(found: Floats, camera: Camera) -> NDArray[np.bool_]:
