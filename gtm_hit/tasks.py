@@ -19,6 +19,7 @@ from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.layers import job as annotation_job
 from gtm_hit.ops.layers import unfinished
 from gtm_hit.ops.outbox import sending
+from gtm_hit.ops.proposals import job as proposal_job
 from gtm_hit.ops.releases import releasing
 from gtm_hit.ops.scores import computing
 from gtm_hit.ops.stitching import running as stitching
@@ -30,6 +31,7 @@ OPERATIONS: dict[str, queue.Operation] = {
     Job.Kind.IMPORT_VIDEOS: job.run_videos,
     Job.Kind.IMPORT_ANNOTATIONS: annotation_job.run,
     Job.Kind.MAKE_RELEASE: releasing.run,
+    Job.Kind.PROPOSE: proposal_job.run,
     Job.Kind.REPLACE_CALIBRATION: calibration_job.run,
     Job.Kind.STITCH: stitching.run,
     Job.Kind.SEND_OUTBOX: partial(sending.run, connect=connect),

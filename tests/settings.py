@@ -30,3 +30,5 @@ INSTALLED_APPS = [
     "django.contrib.staticfiles" if name == "annotator.apps.StaticFiles" else name
     for name in INSTALLED_APPS  # noqa: F405
 ]
+# Tests that want a job start it.
+PROPOSE_AUTOMATICALLY = False

@@ -16,6 +16,7 @@ from gtm_hit.api import (
     outbox,
     pay,
     platform,
+    proposals,
     qualifications,
     releases,
     review,
@@ -34,6 +35,7 @@ from gtm_hit.api.workbench import decision, frames, tutorial
 from gtm_hit.api.workbench.grids import GridView
 from gtm_hit.api.workbench.images import ImageView
 from gtm_hit.api.workbench.places import IN_LAYER, layer_start_place
+from gtm_hit.api.workbench.proposals import ProposalsView, RefusalsView
 from gtm_hit.api.workbench.rectangles import RectanglesView
 from gtm_hit.api.workbench.submission import SubmitView
 
@@ -48,6 +50,8 @@ assignment = [
     path("frames/<int:number>/", frames.FrameView.as_view()),
     path("frames/<int:number>/history/", frames.HistoryView.as_view()),
     path("rectangles/", RectanglesView.as_view()),
+    path("proposals/", gzip_page(ProposalsView.as_view())),
+    path("refusals/", RefusalsView.as_view()),
     path("submit/", SubmitView.as_view()),
     path("comments/", decision.AssignmentComments.as_view()),
     path("comments/<int:pk>/", decision.AssignmentComment.as_view()),
@@ -61,6 +65,8 @@ layer = [
     path("frames/<int:number>/", frames.FrameView.as_view(**IN_LAYER)),
     path("frames/<int:number>/history/", frames.HistoryView.as_view(**IN_LAYER)),
     path("rectangles/", RectanglesView.as_view(**IN_LAYER)),
+    path("proposals/", gzip_page(ProposalsView.as_view(**IN_LAYER))),
+    path("refusals/", RefusalsView.as_view(**IN_LAYER)),
 ]
 # The same for a part of a long layer: the workbench opens no more of it.
 one_part = [
@@ -69,6 +75,8 @@ one_part = [
     path("frames/<int:number>/", frames.FrameView.as_view(**IN_LAYER, schema=None)),
     path("frames/<int:number>/history/", frames.HistoryView.as_view(**IN_LAYER, schema=None)),
     path("rectangles/", RectanglesView.as_view(**IN_LAYER, schema=None)),
+    path("proposals/", gzip_page(ProposalsView.as_view(**IN_LAYER, schema=None))),
+    path("refusals/", RefusalsView.as_view(**IN_LAYER, schema=None)),
 ]
 learning = [
     path("scene/", gzip_page(tutorial.TutorialScene.as_view())),
@@ -84,6 +92,7 @@ one_layer: list[URLPattern | URLResolver] = [
     path("statistics/numbers.csv", statistics.StatisticsTable.as_view()),
     path("statistics/<slug:figure>.<slug:kind>", statistics.StatisticsFigure.as_view()),
     path("exports/", releases.Exports.as_view()),
+    path("missing/", proposals.MissingPeople.as_view()),
 ]
 campaign_pay: list[URLPattern | URLResolver] = [
     path("pay/", pay.Pay.as_view()),
@@ -128,6 +137,9 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("calibrations/versions/<int:number>/", calibration.OneVersion.as_view()),
     path("calibrations/<int:pk>/", calibration.OneCalibration.as_view()),
     path("calibrations/<int:pk>/confirm/", calibration.ConfirmCalibration.as_view()),
+    path("proposals/", proposals.Runs.as_view()),
+    path("proposals/<int:number>/", proposals.OneRun.as_view()),
+    path("proposals/<int:number>/layer/", proposals.RunLayer.as_view()),
     path("annotation-imports/", importing.AnnotationImports.as_view()),
     path("roles/", roles.DatasetRoles.as_view()),
     path("roles/take/", roles.TakeDatasetRole.as_view()),

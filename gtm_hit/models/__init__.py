@@ -11,6 +11,7 @@ from gtm_hit.models.gold import GoldFrame, PlantedFault, Planting
 from gtm_hit.models.job import Job
 from gtm_hit.models.money import MoneyEntry, WorkClock
 from gtm_hit.models.outbox import HookEvent, OutboxRow, PlatformAccount, Submission
+from gtm_hit.models.proposal import PictureBoxes, Proposal, ProposalFrame, ProposalRun, Refusal
 from gtm_hit.models.qualification import (
     Qualification,
     QualificationAttempt,
@@ -53,12 +54,17 @@ __all__ = [
     "Mend",
     "MoneyEntry",
     "OutboxRow",
+    "PictureBoxes",
     "PlantedFault",
     "Planting",
     "PlatformAccount",
+    "Proposal",
+    "ProposalFrame",
+    "ProposalRun",
     "Qualification",
     "QualificationAttempt",
     "QualificationGrant",
+    "Refusal",
     "Release",
     "RequiredQualification",
     "ReviewChoice",

@@ -26,6 +26,7 @@ class Job(models.Model):
         MAKE_RELEASE = "make_release", "release"
         STITCH = "stitch", "stitching into ground truth"
         SEND_OUTBOX = "send_outbox", "messages to a platform"
+        PROPOSE = "propose", "proposals of people"
 
     dataset = models.ForeignKey(
         Dataset,

@@ -33,6 +33,7 @@
  * @property {string} read_only_reason
  * @property {AssignmentPart|null} assignment
  * @property {number} next_person no save of the layer has used it
+ * @property {boolean} [proposed] whether programs propose people here
  * @property {NeighbourFrames} [neighbours] the tutorial has none
  *
  * @typedef {object} FrameAnswer a frame as it is, or as it was after a save
@@ -60,6 +61,22 @@
  * @typedef {{position: number, height: number|null, radius: number|null}} Sized metres; null: the usual person's
  * @typedef {(number[]|null)[]} BoxesByCamera xmin, ymin, xmax, ymax; null where not visible
  * @typedef {{rectangles: BoxesByCamera[]}} RectanglesAnswer by person
+ *
+ * @typedef {{camera: string, box: number[]|null, seen: number|null, hidden: boolean}} Evidence what one view says
+ * @typedef {object} Proposed somebody whom a program proposes
+ * @property {number} id
+ * @property {number} position
+ * @property {number|null} height
+ * @property {number|null} radius
+ * @property {number} score 0 to 1
+ * @property {number} doubt 0 to 1
+ * @property {number} track who is who among the proposals
+ * @property {number|null} person the number the track has in the layer
+ * @property {boolean} seated
+ * @property {boolean} filled
+ * @property {Evidence[]} evidence
+ * @typedef {{number: number, people: Proposed[], refused: number[]}} ProposedFrame
+ * @typedef {{run: number|null, threshold: number, frames: ProposedFrame[]}} ProposalsAnswer
  *
  * @typedef {{batch: string, frames: {number: number, people: number}[], annotations: number, minutes: number,
  *            submitted_at: string|null}} Summary

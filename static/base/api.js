@@ -71,6 +71,14 @@ export class Api {
     return this._json("POST", "rectangles/", { people });
   }
 
+  /**
+   * Whatever parts ask for that are fetched later.
+   * @param {string} method @param {string} path @param {unknown} [body]
+   */
+  ask(method, path, body) {
+    return this._json(method, path, body);
+  }
+
   /** @returns {Promise<import("./answers.js").SubmitAnswer>} */
   submit() {
     return this._json("POST", "submit/", {});

@@ -9,7 +9,8 @@
  * @typedef {import("./store.js").FlagEdit} FlagEdit
  * @typedef {import("./store.js").Flags} Flags
  * @typedef {{label: string, frame: number, edits: Edit[],
- *            selection: {before: number|null, after: number|null}, group: string|null, at: number}} Patch
+ *            selection: {before: number|null, after: number|null}, group: string|null, at: number,
+ *            refuses?: {frame: number, position: number}}} Patch `refuses`: a proposal of nobody
  */
 
 import { gettext, ngettext } from "../base/messages.js";
@@ -31,7 +32,9 @@ export function place(store, { position, height = null, radius = null }) {
  * @param {Store} store @param {number} person @param {number} position
  */
 export function move(store, person, position) {
-  const after = changed(store.marked(person), { position, state: VALIDATED });
+  const before = store.marked(person);
+  const origin = before.origin === "proposed" ? "clicked" : before.origin; // from now on it is the annotator's
+  const after = changed(before, { position, state: VALIDATED, origin });
   return patch(store, gettext("move person {person}", { person }), [put(store.current, after)], {
     select: person,
     group: `move ${store.current} ${person}`,

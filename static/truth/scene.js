@@ -30,6 +30,7 @@ export class Scene {
     this.editable = json.editable;
     this.readOnlyReason = json.read_only_reason;
     this.nextPerson = json.next_person;
+    this.proposed = json.proposed ?? false; // whether there is anything to fetch
     this.frames = json.frames;
     /** @type {AnyCamera[]} */
     this.cameras = json.cameras.map((camera) => byTable.get(camera.index)?.camera ?? new Camera(camera));

@@ -7,7 +7,6 @@ import { keyFor } from "./keys/keys.js";
  * @typedef {"moving"|"yellow"|"zooming"} HintId
  * @typedef {object} Parts
  * @property {import("../truth/store.js").Store} store
- * @property {import("../views/panes.js").Panes} panes
  * @property {import("./settings.js").Settings} settings
  */
 
@@ -16,7 +15,7 @@ const SHOWN = 20_000; // ms
 /** One short hint under the list of people when it is needed for the first time; none comes twice. */
 export class Hints {
   /** @param {Parts} parts */
-  constructor({ store, panes, settings }) {
+  constructor({ store, settings }) {
     this._store = store;
     this._settings = settings;
     /** @type {ReturnType<typeof setTimeout>|undefined} */
@@ -32,8 +31,13 @@ export class Hints {
     store.on("selection", ({ after }) => after !== null && this._give("moving"));
     store.on("frame", () => this._lookForYellow());
     store.on("change", () => this._lookForYellow());
-    panes.element.addEventListener("wheel", () => this._give("zooming"), { passive: true });
     settings.on("change", ({ name, value }) => name === "hints" && this._switch(value));
+    if (store.selection !== null) this._give("moving"); // what was done while this was fetched
+    this._lookForYellow();
+  }
+
+  zoomed() {
+    this._give("zooming");
   }
 
   _lookForYellow() {

@@ -15,7 +15,6 @@ import { Playback } from "./frames/playback.js";
 import { TimeActions } from "./frames/time_actions.js";
 import { Timeline } from "./frames/timeline.js";
 import { UndoActions } from "./frames/undo_actions.js";
-import { Hints } from "./hints.js";
 import { KeyActions } from "./key_actions.js";
 import { nameKeys } from "./keys/key_titles.js";
 import { Keyboard } from "./keys/keyboard.js";
@@ -96,7 +95,7 @@ export async function buildWorkbench(root, session, { mode, home }) {
   const layout = new Layout(stage, panes, panel.element, scene.cameras[0].width / scene.cameras[0].height);
   const views = new Views({ panes, layout, settings, notices });
   const identity = new IdentityActions({ ...session, panes, notices, guard });
-  fillTable(actions, session, page, {
+  const intents = fillTable(actions, session, page, {
     ...placing,
     select,
     playback,
@@ -107,6 +106,7 @@ export async function buildWorkbench(root, session, { mode, home }) {
   actions.use(chooseViews(root, views, page));
   showPaths(session.store, page);
   showFilmstrip(timeline, notices, { ...session, navigation, panes, settings });
+  if (scene.proposed) propose(session, { ...page, ...placing, panel: panel.element, perform, actions, intents });
   if (mode !== "tutorial") addForWork(panel, session, page, { actions, perform, identity, heads, guard });
   document.dispatchEvent(new CustomEvent("built", { detail: { panel, ...session, ...page } }));
   watch(session, panes, notices);
@@ -121,12 +121,25 @@ export async function buildWorkbench(root, session, { mode, home }) {
  */
 function addForWork(panel, session, page, { actions, perform, identity, heads, guard }) {
   const list = warn(session, { ...page, actions, identity });
-  panel.element.append(
-    panelTools(session.store, perform, heads),
-    list,
-    new Hints({ ...page, store: session.store }).element,
-  );
+  panel.element.append(panelTools(session.store, perform, heads), list);
+  hint(panel, session.store, page);
   actions.use(frameHistory(panel, { ...session, ...page, guard }));
+}
+
+/**
+ * Hints are about what somebody does, so they come with the first thing done; nobody misses one that does not arrive.
+ * @param {PeoplePanel} panel @param {import("../truth/store.js").Store} store @param {Page} page
+ */
+function hint(panel, store, page) {
+  /** @param {typeof import("./hints.js")} module */
+  const make = ({ Hints }) => {
+    const made = new Hints({ ...page, store });
+    panel.element.append(made.element);
+    return made;
+  };
+  const hints = fetched({ say() {} }, import.meta.resolve("./hints.js"), make);
+  for (const name of /** @type {const} */ (["selection", "frame", "change"])) store.on(name, hints);
+  page.panes.element.addEventListener("wheel", async () => (await hints())?.zoomed(), { passive: true });
 }
 
 /**
@@ -143,6 +156,17 @@ function fillTable(actions, session, page, parts) {
   actions.use(new UndoActions({ ...session, ...page, ...parts }).table());
   actions.use(new TimeActions({ ...session, ...page, ...parts }).table());
   actions.use(new OneByOne({ ...session, ...page, ...parts, intents, people, otherwise: () => keys.escape() }).table());
+  return intents;
+}
+
+/**
+ * People whom programs propose, drawn over the views; where they do not arrive the page works as if there were none.
+ * @param {Session} session @param {import("./proposals/start.js").Page} page
+ */
+function propose(session, page) {
+  /** @param {typeof import("./proposals/start.js")} part */
+  const make = ({ startProposals }) => startProposals(session, page);
+  fetched(page.notices, import.meta.resolve("./proposals/start.js"), make)();
 }
 
 /**

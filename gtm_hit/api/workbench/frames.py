@@ -26,6 +26,7 @@ from gtm_hit.ops.frames.saving import (
     save_frame,
     state_at,
 )
+from gtm_hit.ops.proposals import runs
 from gtm_hit.ops.work import assignments
 
 
@@ -139,6 +140,7 @@ class SceneView(PlacedView):
                 "assignment": scene.assignment_part(place.assignment),
                 "next_person": next_person(place.layer),
                 "neighbours": scene.neighbours_part(place.assignment),
+                "proposed": runs.in_use(place.dataset) is not None,
             }
         )
 

@@ -64,6 +64,7 @@ class SceneSerializer(serializers.Serializer[Any]):
     read_only_reason = serializers.CharField()
     assignment = serializers.DictField(allow_null=True)
     next_person = serializers.IntegerField(help_text="no save of the layer has used it")
+    proposed = serializers.BooleanField(required=False, help_text="whether programs propose people here")
     neighbours = serializers.DictField(
         required=False, help_text="before, after: frames of accepted work beside the batch, nearest first"
     )

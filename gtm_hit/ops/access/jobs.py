@@ -23,6 +23,7 @@ NEEDED: dict[str, Roles] = {
     Job.Kind.EXPORT_LAYER: CARES,
     Job.Kind.MAKE_RELEASE: Role.MAINTAINER,
     Job.Kind.REPLACE_CALIBRATION: Role.MAINTAINER,
+    Job.Kind.PROPOSE: Role.MAINTAINER,
     **dict.fromkeys(IMPORTS, Role.MAINTAINER),
 }
 NOT_YOURS = gettext_lazy(

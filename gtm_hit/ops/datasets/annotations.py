@@ -38,6 +38,7 @@ class ImportedFrame:
     heights: NDArray[np.float64]
     radii: NDArray[np.float64]
     boxes: NDArray[np.int32] | None = None
+    origin: str = Annotation.Origin.IMPORTED.value
 
     def __len__(self) -> int:
         return len(self.persons)
@@ -49,9 +50,9 @@ class ImportedFrame:
             _or_none(self.heights),
             _or_none(self.radii),
         ]
-        state, origin = Annotation.State.VALIDATED.value, Annotation.Origin.IMPORTED.value
+        state = Annotation.State.VALIDATED.value
         return [
-            Row(person, position, state, origin, height, radius)
+            Row(person, position, state, self.origin, height, radius)
             for person, position, height, radius in zip(*columns, strict=True)
         ]
 

@@ -27,6 +27,7 @@ from gtm_hit.ops.files.images import MOST_PIXELS, Derivatives
 from gtm_hit.ops.files.picture_cleanup import pictures_in_use
 from gtm_hit.ops.ground import grid_files
 from gtm_hit.ops.jobs.progress import WRITING, Progress, no_progress
+from gtm_hit.ops.proposals import job as proposals
 
 FRAMES_AT_ONCE = 500  # in one question to the database
 
@@ -326,6 +327,8 @@ def _write(
         )
         if remember:
             remember(report)
+        if reading.numbers:
+            proposals.start_by_itself(dataset)
     return report
 
 

@@ -67,7 +67,8 @@ def import_annotations(
     """
     findings = Findings(frozenset(source.drop))
     try:
-        people = _read(dataset, source, report, findings)
+        _check_layer(dataset, source.layer)
+        people = read_people(dataset, source, report, findings)
         findings.standing.raise_if_any()
     except FormatError as error:
         raise ImportFailed(_seen_from(source.path, error.problems)) from error
@@ -89,8 +90,8 @@ def import_annotations(
     return done
 
 
-def _read(dataset: Dataset, source: AnnotationSource, report: Progress, findings: Findings) -> People:
-    _check_layer(dataset, source.layer)
+def read_people(dataset: Dataset, source: AnnotationSource, report: Progress, findings: Findings) -> People:
+    """Everybody the files tell of, on the dataset's grid; raises FormatError."""
     cameras = dataset.calibrated_cameras()
     numbers = list(Frame.objects.filter(dataset=dataset).order_by("number").values_list("number", flat=True))
     scene = Scene(dataset, [camera.name for camera in cameras], numbers)

@@ -19,13 +19,13 @@ LONGEST = timedelta(days=1)  # no import takes as long
 
 
 @contextmanager
-def layer(dataset: Dataset, hidden: bool) -> Iterator[Layer]:
+def layer(dataset: Dataset, hidden: bool, kind: str = Layer.Kind.IMPORTED) -> Iterator[Layer]:
     """A layer nobody sees until `appear`; gone when the block fails."""
     # A name of its own: two imports at once, or the rest of a killed one, are not in each other's way.
     made = Layer.with_unfinished.create(
         dataset=dataset,
         name=f"unfinished-{uuid4().hex}",
-        kind=Layer.Kind.IMPORTED,
+        kind=kind,
         hidden=hidden,
         unfinished=True,
     )

@@ -9,6 +9,7 @@ from django.utils.translation import gettext as _
 
 from gtm_hit.models import Batch, Dataset, Frame
 from gtm_hit.ops.errors import OperationError
+from gtm_hit.ops.proposals import job as proposals
 
 MAX_SIZE = 500
 MAX_COPIES = 20
@@ -35,7 +36,10 @@ def make_batches(dataset: Dataset, size: int = 10, copies: int = 1) -> int:
         for chunk in new_chunks(dataset, {frame for ids in frames_of.values() for frame in ids}, size):
             number += 1
             frames_of[number], copies_of[number] = chunk, set()
-        return add_copies(dataset, frames_of, copies_of, copies)
+        added = add_copies(dataset, frames_of, copies_of, copies)
+        if added:
+            proposals.start_by_itself(dataset)
+        return added
 
 
 def existing(dataset: Dataset) -> tuple[dict[int, list[int]], dict[int, set[int]]]:

@@ -87,6 +87,14 @@ const TABLE = [
   ["escape", "other", ["Escape"], () => gettext("leave zoom, then let go of the person")],
 ];
 
+/**
+ * Rows of a part that is fetched later; whoever adds them tells the keyboard.
+ * @param {typeof TABLE} rows
+ */
+export function addKeys(rows) {
+  TABLE.push(...rows);
+}
+
 /** Who counts on finding them: the way out, and digits that mean views. */
 const FIXED = ["toggleView", "controls", "escape"];
 

@@ -12,6 +12,8 @@ export class Queue {
     this._store = store;
     /** @type {number[]} */
     this._order = [];
+    /** @type {((persons: number[]) => number|undefined)|null} who comes before all others, if somebody does */
+    this.first = null;
     store.on("frame", () => (this._order = []));
   }
 
@@ -40,6 +42,8 @@ export class Queue {
 
   /** @param {number[]} persons */
   _nearest(persons) {
+    const first = this.first?.(persons);
+    if (first !== undefined) return first;
     const last = this._order.map((one) => this._store.person(one)).findLast(Boolean);
     if (!last) return persons[0];
     const from = this._scene.metres(last.position);
