@@ -22,10 +22,10 @@ NEVER_SURE = 1e-6
 
 @dataclass(frozen=True)
 class PomSettings:
-    sigma: float = 0.01  # the paper's: how far foreground and average may differ
-    prior: float = 0.01  # of a position to be occupied
+    sigma: float = 0.002  # how far foreground and average may differ
+    prior: float = 0.001  # of a position to be occupied; the crowd that is expected must not fill the views
     rounds: int = 60
-    inertia: float = 0.6  # of the probabilities from round to round, or they swing
+    inertia: float = 0.8  # of the probabilities from round to round, or they swing
     width: int = 320  # pixels that views are shrunk to
     occupied: float = 0.5  # probability from which somebody stands there
     apart: float = 0.5  # metres between two people
