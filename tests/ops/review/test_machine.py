@@ -24,7 +24,7 @@ from gtm_hit.ops.review import mending
 from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.review.transitions import transition
 from gtm_hit.ops.work import assignments
-from tests.ops.review.scene import REASON, into_campaign, make_reviewer, make_work, run_out
+from tests.ops.review.scene import REASON, into_campaign, make_reviewer, make_work, pool, run_out
 from tests.work_scene import do_frames, make_worker
 
 # Written out once more, by hand: the table must not be its own judge.
@@ -98,8 +98,8 @@ class Reviewing(RuleBasedStateMachine):
     @rule(who=st.integers(0, 2), whole=st.booleans())
     def work(self, who: int, whole: bool) -> None:
         """Mostly whole batches, so that there is something to decide about."""
-        self.try_step("claim", lambda: assignments.claim(self.workers[who], self.dataset))
-        mine = assignments.current(self.workers[who], self.dataset)
+        self.try_step("claim", lambda: assignments.claim(self.workers[who], pool(self.dataset)))
+        mine = assignments.current(self.workers[who], pool(self.dataset))
         if mine and whole:
             do_frames(mine)
             self.try_step("submit", lambda: assignments.submit(mine))
