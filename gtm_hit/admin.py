@@ -19,6 +19,9 @@ from gtm_hit.models import (
     Batch,
     Calibration,
     Camera,
+    Campaign,
+    CampaignLink,
+    CampaignWorker,
     Comment,
     Dataset,
     EntryLink,
@@ -44,6 +47,10 @@ from gtm_hit.models import (
     ReviewChoice,
     RoleChange,
     Save,
+    StitchConflict,
+    StitchedFrame,
+    Stitching,
+    StitchingRun,
     Submission,
     Transition,
     WorkClock,
@@ -446,3 +453,62 @@ class HookEventAdmin(LookOnlyAdmin):
     list_filter = ["kind", "campaign"]
     list_select_related = ["campaign__dataset"]
     search_fields = ["=event_id"]
+
+
+@admin.register(Campaign)
+class CampaignAdmin(LookOnlyAdmin):
+    list_display = ["name", "dataset", "platform", "state", "entry", "created_by", "created_at"]
+    list_filter = ["state", "platform", "dataset"]
+    list_select_related = ["dataset", "created_by"]
+    search_fields = ["name", "title", "dataset__slug"]
+    exclude = ["platform_settings"]  # with the codes that say whose work is done
+
+
+@admin.register(CampaignWorker)
+class CampaignWorkerAdmin(LookOnlyAdmin):
+    list_display = ["worker", "campaign", "standing", "changed_by", "changed_at"]
+    list_filter = ["standing", "campaign"]
+    list_select_related = ["worker", "campaign__dataset", "changed_by"]
+    search_fields = ["worker__pseudonym", "campaign__name", "reason"]
+
+
+@admin.register(CampaignLink)
+class CampaignLinkAdmin(LookOnlyAdmin):
+    """What makes an address is in none of its fields."""
+
+    list_display = ["pk", "kind", "campaign", "worker", "uses", "created_at", "expires_at", "revoked_at"]
+    list_filter = ["kind", "campaign"]
+    list_select_related = ["campaign__dataset", "worker"]
+    search_fields = ["campaign__name", "worker__pseudonym", "note"]
+
+
+@admin.register(Stitching)
+class StitchingAdmin(LookOnlyAdmin):
+    list_display = ["layer", "dataset", "campaign", "created_at"]
+    list_filter = ["dataset"]
+    list_select_related = ["layer", "dataset", "campaign__dataset"]
+    search_fields = ["layer__name", "dataset__slug", "campaign__name"]
+
+
+@admin.register(StitchingRun)
+class StitchingRunAdmin(LookOnlyAdmin):
+    list_display = ["pk", "stitching", "created_by", "created_at"]
+    list_select_related = ["stitching__dataset", "stitching__campaign__dataset", "created_by"]
+    search_fields = ["stitching__layer__name", "stitching__dataset__slug"]
+    date_hierarchy = "created_at"
+
+
+@admin.register(StitchedFrame)
+class StitchedFrameAdmin(LookOnlyAdmin):
+    list_display = ["frame", "layer", "revision"]
+    list_filter = ["layer__dataset"]
+    list_select_related = ["frame__dataset", "layer__dataset"]
+    search_fields = ["=frame__number", "layer__name"]
+
+
+@admin.register(StitchConflict)
+class StitchConflictAdmin(LookOnlyAdmin):
+    list_display = ["pk", "kind", "stitching", "left_at", "came_at", "state", "decision", "decided_by"]
+    list_filter = ["state", "kind", "decision", "stitching__dataset"]
+    list_select_related = ["stitching__dataset", "stitching__campaign__dataset", "decided_by"]
+    search_fields = ["stitching__dataset__slug", "=left_at", "=came_at"]
