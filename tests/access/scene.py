@@ -16,6 +16,7 @@ from gtm_hit.ops.exports import exporting
 from gtm_hit.ops.ground import grid_files
 from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.work import assignments, batches, links
+from tests.access.campaign_scene import campaign_fills
 from tests.work_scene import make_dataset, make_layer, make_worker, row, save
 
 HERE, ELSEWHERE = "square", "elsewhere"
@@ -53,7 +54,8 @@ def make_place(slug: str) -> Place:
     layer, hidden = make_layer(dataset), make_layer(dataset, SECRET, Layer.Kind.GROUND_TRUTH, hidden=True)
     for each in (layer, hidden):
         save(each, dataset.frames.all()[0], [row()])
-    return Place(dataset, assignment, layer, hidden, fills_of(dataset, assignment, layer))
+    fills = fills_of(dataset, assignment, layer) | campaign_fills(dataset, layer, hidden)
+    return Place(dataset, assignment, layer, hidden, fills)
 
 
 def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str, str]:

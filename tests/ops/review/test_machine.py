@@ -19,6 +19,7 @@ from hypothesis.stateful import (
 )
 
 from gtm_hit.models import Appeal, Assignment, Category, Transition, Worker
+from gtm_hit.ops.access.roles import Role, may
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.review import mending
 from gtm_hit.ops.review.machine import Action
@@ -210,7 +211,7 @@ class Reviewing(RuleBasedStateMachine):
             elif one.action in BY_SYSTEM:
                 assert one.worker_id is None and one.user is None
             else:
-                assert one.user is not None and one.user.is_staff
+                assert one.user is not None and may(one.user, Role.REVIEWER, self.dataset)
                 assert one.user.username != one.assignment.worker.external_id, "reviewed his own work"
 
     @invariant()
