@@ -9,7 +9,7 @@ from django.contrib.auth.models import User
 from django.core.files.base import ContentFile
 from django.core.files.storage import default_storage
 
-from gtm_hit.models import Assignment, Dataset, Job, Layer, Release
+from gtm_hit.models import Assignment, Dataset, Job, Layer, ProposalRun, Release
 from gtm_hit.ops.access import granting
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.exports import exporting
@@ -75,7 +75,9 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
     picture = dataset.frames.all()[0].images.all()[0].light_digest
     default_storage.save(f"images/{picture[:2]}/{picture}.jpg", ContentFile(b"picture"))
     grid = grid_files.digest_of(dataset, dataset.calibrated_cameras()[0])
+    run = ProposalRun.objects.create(dataset=dataset, method=ProposalRun.Method.BACKGROUND, digest="0" * 64)
     return {
+        "proposals/<int:number>": f"proposals/{run.pk}",
         "datasets/<slug:slug>": f"datasets/{dataset.slug}",
         "layers/<str:name>": f"layers/{layer.name}",
         "layers/<int:layer>": f"layers/{layer.pk}",
