@@ -156,6 +156,7 @@ def by_general_link(tale: Story) -> list[Batch]:
     page.goto(tale.link("survey"))
     page.get_by_label("Your worker ID").fill("nina")
     page.get_by_role("button", name="Start").click()
+    page.wait_for_url(re.compile("/work/"))
     home, held = page.url, []
     for press in (re.compile("start", re.I), "Annotate another batch", "Annotate another batch"):
         page.get_by_role("button", name=press).first.click()
@@ -193,16 +194,20 @@ def desk(tale: Story, page: Page, pk: int) -> Page:
 
 
 def accept(tale: Story, page: Page, pk: int) -> None:
-    desk(tale, page, pk)
-    unseen = page.locator(".place").inner_text()
-    page.keyboard.press("a")
-    if re.search(r"[1-9]\d* difference", unseen):
-        page.get_by_role("dialog").get_by_role("button", name="Accept").click()
+    desk(tale, page, pk).keyboard.press("a")
+    asked = page.get_by_role("dialog").get_by_role("button", name="Accept")
+    tale.site.wait_until(lambda: asked.is_visible() or not at_desk(page.url, pk))
+    if asked.is_visible():
+        asked.click()
     decided(tale, page, pk, "accepted")
 
 
+def at_desk(url: str, pk: int) -> bool:
+    return f"/review/{pk}/" in url
+
+
 def decided(tale: Story, page: Page, pk: int, state: str) -> None:
-    page.wait_for_url(lambda url: f"/review/{pk}/" not in url)  # the next one, or the queue
+    page.wait_for_url(lambda url: not at_desk(url, pk))  # the next one, or the queue
     tale.site.wait_until(
         lambda: tale.site.sql("SELECT state FROM gtm_hit_assignment WHERE id = ?", pk) == [(state,)]
     )
