@@ -11,7 +11,17 @@ from typing import Any
 from django.db.models import Count, Max, Q, QuerySet, Sum
 from django.utils import timezone
 
-from gtm_hit.models import Assignment, Campaign, CampaignWorker, Dataset, LayerFrame, Worker
+from gtm_hit.models import (
+    Appeal,
+    Assignment,
+    Campaign,
+    CampaignWorker,
+    Dataset,
+    LayerFrame,
+    OutboxRow,
+    StitchConflict,
+    Worker,
+)
 
 State = Assignment.State
 PAID = [State.SUBMITTED, State.ACCEPTED, State.RETURNED]  # what costs something, as far as is known now
@@ -48,6 +58,9 @@ class Waiting:
 
     to_review: int
     returned: int
+    appeals: int
+    conflicts: int  # of stitching, undecided
+    unclear: int  # messages to the platform of which nobody knows what became of them
     invited: int
     blocked: int
 
@@ -57,8 +70,17 @@ def waiting(campaign: Campaign) -> Waiting:
         submitted=Count("pk", Q(state=State.SUBMITTED)), returned=Count("pk", Q(state=State.RETURNED))
     )
     standing = dict(campaign.workers.values_list("standing").annotate(count=Count("pk")).order_by())
+    appeals = Appeal.objects.filter(assignment__batch__campaign=campaign, outcome=Appeal.Outcome.OPEN)
+    conflicts = StitchConflict.objects.filter(stitching__campaign=campaign, state=StitchConflict.State.OPEN)
+    unclear = OutboxRow.objects.filter(campaign=campaign, state=OutboxRow.State.UNCLEAR)
     return Waiting(
-        held["submitted"], held["returned"], standing.get("invited", 0), standing.get("blocked", 0)
+        to_review=held["submitted"],
+        returned=held["returned"],
+        appeals=appeals.count(),
+        conflicts=conflicts.count(),
+        unclear=unclear.count(),
+        invited=standing.get("invited", 0),
+        blocked=standing.get("blocked", 0),
     )
 
 

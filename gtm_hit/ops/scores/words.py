@@ -12,6 +12,7 @@ from gtm_hit.models import AssignmentScore, WorkerScore
 
 SAID = 0.5  # points; what costs less is not worth a sentence
 MOST_SAID = 4
+ENOUGH = 3  # submitted batches before a worker is told
 
 
 def of_score(row: WorkerScore) -> list[str]:
@@ -89,6 +90,32 @@ def signal_in_words(reason: Mapping[str, Any]) -> str:
         ),
     }
     return sentences[reason["name"]] % values
+
+
+def for_worker(row: WorkerScore | None) -> str:
+    """The score as its worker reads it; empty before there is enough. Nothing tells how it was measured."""
+    if row is None or row.assignments < ENOUGH:
+        return ""
+    said = _("Your work scores %(score)d of 100.") % {"score": round(row.score)}
+    lost = [one for one in row.reasons if one["lost"] >= SAID and one["bad"] > 0]
+    costs = [worker_words()[one["part"]] for one in lost if one["part"] in worker_words()][:2]
+    if not costs:
+        return said
+    return said + " " + _("What cost most: %(parts)s.") % {"parts": "; ".join(dict.fromkeys(costs))}
+
+
+def worker_words() -> dict[str, str]:
+    wrong = _("people who were left where they should not be")
+    return {
+        "found": _("people who were missed, or marked where nobody stands"),
+        "placed": _("people marked beside where they stand"),
+        "identity": _("people whose numbers changed on the way"),
+        "faults": wrong,
+        "care": wrong,
+        "agreement": _("people whom others saw differently"),
+        "plausible": _("people too close together, or too fast"),
+        "finishing": _("batches that were not finished"),
+    }
 
 
 def percent(part: float, whole: float) -> int:

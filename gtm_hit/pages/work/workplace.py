@@ -19,7 +19,7 @@ from gtm_hit.crowd.platform import Outcome, Stay
 from gtm_hit.crowd.platforms import platform_of
 from gtm_hit.models import Worker
 from gtm_hit.ops.access.roles import SEES, layers_of
-from gtm_hit.ops.campaigns import entry_rules
+from gtm_hit.ops.campaigns import account, entry_rules
 from gtm_hit.ops.campaigns import links as campaign_links
 from gtm_hit.ops.frames import parts
 from gtm_hit.ops.qualifications import requirements
@@ -166,6 +166,7 @@ def start_page(request: HttpRequest, seat: links.Seat, token: str) -> HttpRespon
         "tutorial": lesson.available(),
         "refusal": entry_rules.refusal(seat.campaign, seat.worker) if seat.campaign else None,
         **leaving.shown(end),
+        "account": account.of(seat.campaign, seat.worker) if seat.campaign and finished else None,
         "qualifications": requirements.offered(seat.dataset).exists(),
     }
     return render(request, "work/home.html", context)
