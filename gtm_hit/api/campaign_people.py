@@ -17,7 +17,7 @@ from gtm_hit.api.common.refusals import valid
 from gtm_hit.api.common.staff import READS, WRITES, Pages, answers, caller, invalid
 from gtm_hit.crowd.platforms import platform_of
 from gtm_hit.models import ApiToken, Campaign, CampaignLink, Worker
-from gtm_hit.ops.campaigns import links, overview, standing
+from gtm_hit.ops.campaigns import links, overview, seats, standing
 from gtm_hit.ops.campaigns.errors import CampaignError
 from gtm_hit.ops.work import links as work_links
 from gtm_hit.ops.work.workers import MAX_ID
@@ -159,7 +159,7 @@ class OneCampaignWorker(CampaignView):
         if wanted["deed"] == "invite":
             standing.invite(campaign, name, caller(request))
             return
-        worker = None if "\x00" in name else standing.worker_named(campaign, name)
+        worker = None if "\x00" in name else seats.named(campaign, name)
         if worker is None:
             raise Http404
         match wanted["deed"]:
@@ -168,7 +168,7 @@ class OneCampaignWorker(CampaignView):
             case "forget":
                 standing.forget(campaign, worker)
             case "revoke_links":
-                work_links.revoke_worker(worker)
+                seats.revoke(worker, caller(request))
             case "revoke_link":
                 rows = worker.assignments.filter(batch__campaign=campaign, pk=wanted.get("assignment", 0))
                 if (found := rows.first()) is None:

@@ -10,8 +10,10 @@ from decimal import Decimal, InvalidOperation
 from django.contrib.auth.models import User
 from django.core.management.base import BaseCommand, CommandError
 
+from gtm_hit.management.acting import acting_as
 from gtm_hit.management.lookups import dataset_named
 from gtm_hit.models import Campaign
+from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.errors import OperationError
 
 
@@ -20,7 +22,7 @@ class CampaignCommand(BaseCommand):
         parser.add_argument("slug", help="the dataset")
         parser.add_argument("campaign", help="the campaign's name")
         parser.add_argument(
-            "--as", dest="username", metavar="USER", help="under whose name it is written down"
+            "--as", dest="username", metavar="USER", help="under whose name it is written down; a manager"
         )
 
 
@@ -34,13 +36,9 @@ def campaign_named(slug: str, name: str) -> Campaign:
     return campaign
 
 
-def user_named(username: str | None) -> User | None:
-    if username is None:
-        return None
-    user = User.objects.filter(username=username).first()
-    if user is None:
-        raise CommandError(f"There is no user {username!r}.")
-    return user
+def manager_named(username: str | None, campaign: Campaign) -> User | None:
+    """In whose name a manager's deed is written down; raises CommandError if he may not do it."""
+    return acting_as(username, Role.MANAGER, campaign.dataset)
 
 
 def amount(text: str) -> Decimal:

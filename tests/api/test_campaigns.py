@@ -117,6 +117,8 @@ def test_workers_are_invited_blocked_and_their_links_ended(
     assert post(client, path, {"deed": "revoke_links"}).status_code == 204
     assert client.get(f"/work/{seat}/").status_code == 404
     assert post(client, "walk/workers/nobody/", {"deed": "forget"}).status_code == 404
+    Worker.objects.create(platform="link", external_id="elsewhere")
+    assert post(client, "walk/workers/elsewhere/", {"deed": "revoke_links"}).status_code == 404
 
 
 ADDRESSES = ["", "walk/", "walk/course/", "walk/links/", "walk/workers/"]

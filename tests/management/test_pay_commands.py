@@ -13,9 +13,11 @@ from django.contrib.auth.models import User
 from django.core.management import CommandError, call_command
 
 from gtm_hit.models import Assignment, Campaign, MoneyEntry, OutboxRow, PlatformAccount, Worker
+from gtm_hit.ops.access.roles import Role
+from tests.campaign_scene import account
 from tests.paid_campaign import assign, make_account, make_campaign
 from tests.prolific_server import TOKEN, Prolific, prolific_server
-from tests.work_scene import make_worker
+from tests.work_scene import make_dataset, make_worker
 
 NAMES = ("square", "autumn")
 
@@ -49,7 +51,7 @@ def test_pay_prints_who_is_to_get_what(ada: Worker) -> None:
 
 
 def test_pay_approves_pays_takes_back_and_writes_csv(ada: Worker, tmp_path: Path) -> None:
-    User.objects.create_user("vera")
+    account("vera", Role.MANAGER, Campaign.objects.get().dataset)
     run("pay", "--as", "vera", "--approve-bonuses")
     run("pay", "--paid", ada.pseudonym, "--amount", "1.50", "--note", "cash")
     line = MoneyEntry.objects.get(kind="paid")
@@ -132,3 +134,15 @@ def test_prolific_refuses_an_empty_key_and_a_strange_address(ada: Worker, tmp_pa
         with pytest.raises(CommandError):
             run("prolific", *arguments)
     assert PlatformAccount.objects.get().token == TOKEN
+
+
+@pytest.mark.parametrize("command", ["pay", "outbox", "prolific"])
+def test_only_a_manager_of_the_dataset_lends_his_name(ada: Worker, command: str) -> None:
+    dataset = Campaign.objects.get().dataset
+    account("rita", Role.REVIEWER, dataset)
+    account("elsewhere", Role.MANAGER, make_dataset("other"))
+    account("vera", Role.MANAGER, dataset)
+    for name in ("rita", "elsewhere"):
+        with pytest.raises(CommandError, match="takes the role"):
+            run(command, "--as", name)
+    assert run(command, "--as", "vera") == run(command)

@@ -14,8 +14,11 @@ from django.core.management import CommandError, call_command
 from django.db import connection
 
 from gtm_hit.models import Assignment, Transition
+from gtm_hit.ops.access.roles import Role
+from tests.campaign_scene import account
 from tests.conftest import REPOSITORY
 from tests.ops.review.scene import REASON, make_reviewer, make_work, state, submitted
+from tests.work_scene import make_dataset
 
 pytestmark = pytest.mark.django_db
 
@@ -45,7 +48,7 @@ def test_the_list_is_one_object(work: Assignment) -> None:
 def test_a_decision_names_who_takes_it(work: Assignment) -> None:
     with pytest.raises(CommandError, match="--by"):
         run("accept", str(work.pk))
-    with pytest.raises(CommandError, match="no user"):
+    with pytest.raises(CommandError, match="nobody"):
         run("accept", str(work.pk), "--by", "nobody")
     assert told("accept", str(work.pk), "--by", "rita")["state"] == "accepted"
 
@@ -80,3 +83,13 @@ def test_as_a_process_it_prints_one_object_and_fails_with_words(work: Assignment
     assert refused.returncode == 1 and "categories" in refused.stderr and not refused.stdout
     accepted = process("accept", str(work.pk), "--by", "rita", "--json")
     assert json.loads(accepted.stdout)["state"] == state(work) == "accepted"
+
+
+def test_who_is_no_reviewer_of_the_dataset_may_not_lend_his_name(work: Assignment) -> None:
+    account("max", Role.MAINTAINER, work.batch.dataset)
+    account("elsewhere", Role.REVIEWER, make_dataset("other"))
+    for name in ("max", "elsewhere"):
+        for arguments in (("accept",), ("mend",), ("comment", "--reason", "Well")):
+            with pytest.raises(CommandError, match="takes the role"):
+                run(arguments[0], str(work.pk), *arguments[1:], "--by", name)
+    assert state(work) == "submitted"

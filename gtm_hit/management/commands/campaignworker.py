@@ -6,7 +6,7 @@ from django.core.management.base import BaseCommand, CommandError, CommandParser
 
 from gtm_hit.management.lookups import campaign_named
 from gtm_hit.models import Campaign, Worker
-from gtm_hit.ops.campaigns import standing, tables
+from gtm_hit.ops.campaigns import seats, standing, tables
 from gtm_hit.ops.campaigns.errors import CampaignError
 from gtm_hit.ops.work import links
 
@@ -34,9 +34,9 @@ class Command(BaseCommand):
                 row = standing.invite(campaign, worker)
                 self.stdout.write(f"{row.worker.pseudonym} is invited.")
                 return
-            found = standing.worker_named(campaign, worker)
+            found = seats.named(campaign, worker)
             if found is None:
-                raise CommandError(f"no worker {worker} on this platform")
+                raise CommandError(f"no worker {worker} in campaign {name}")
             self.do(campaign, found, options)
         except CampaignError as error:
             raise CommandError(str(error)) from error

@@ -7,7 +7,7 @@ from typing import Any
 from django.core.management.base import CommandError
 
 from gtm_hit.crowd.prolific import connect
-from gtm_hit.management.campaign_command import CampaignCommand, campaign_named, told, user_named
+from gtm_hit.management.campaign_command import CampaignCommand, campaign_named, manager_named, told
 from gtm_hit.management.progress import ProgressLine
 from gtm_hit.models import Campaign, OutboxRow
 from gtm_hit.ops.outbox import handover, overview, planning, rows, sending
@@ -42,7 +42,7 @@ class Command(CampaignCommand):
 
     def act(self, campaign: Campaign, options: dict[str, Any]) -> bool:
         """Whether everything there is to say was said."""
-        by = user_named(options["username"])
+        by = manager_named(options["username"], campaign)
         for action in ("retry", "withdraw", "happened", "not_happened"):
             if pk := options[action]:
                 rows.decide(row_numbered(campaign, pk), action, by)

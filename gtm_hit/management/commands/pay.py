@@ -6,7 +6,7 @@ from typing import Any
 
 from django.core.management.base import CommandError
 
-from gtm_hit.management.campaign_command import CampaignCommand, amount, campaign_named, told, user_named
+from gtm_hit.management.campaign_command import CampaignCommand, amount, campaign_named, manager_named, told
 from gtm_hit.models import Campaign, MoneyEntry, Worker
 from gtm_hit.ops.pay import csv_files, ledger, table
 
@@ -52,7 +52,7 @@ class Command(CampaignCommand):
         self.tell(found)
 
     def act(self, campaign: Campaign, options: dict[str, Any]) -> None:
-        by = user_named(options["username"])
+        by = manager_named(options["username"], campaign)
         if options["approve_bonuses"]:
             table.approve_bonuses(campaign, by)
         if options["bonus"]:

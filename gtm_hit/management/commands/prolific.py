@@ -10,7 +10,7 @@ from django.core.management.base import CommandError
 from django.urls import reverse
 
 from gtm_hit.crowd.prolific import connect
-from gtm_hit.management.campaign_command import CampaignCommand, campaign_named, told, user_named
+from gtm_hit.management.campaign_command import CampaignCommand, campaign_named, manager_named, told
 from gtm_hit.models import Campaign
 from gtm_hit.ops.outbox import accounts, studies
 
@@ -36,7 +36,8 @@ class Command(CampaignCommand):
         parser.add_argument("--places", type=int, help="with --draft; as many as batches when left out")
 
     def handle(self, *, slug: str, campaign: str, **options: Any) -> None:
-        found, by = campaign_named(slug, campaign), user_named(options["username"])
+        found = campaign_named(slug, campaign)
+        by = manager_named(options["username"], found)
         with told():
             self.configure(found, options, by)
             if options["draft"]:

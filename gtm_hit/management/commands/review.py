@@ -7,8 +7,10 @@ from typing import Any
 from django.contrib.auth.models import User
 from django.core.management.base import BaseCommand, CommandError
 
+from gtm_hit.management.acting import acting_as
 from gtm_hit.management.lookups import dataset_named
 from gtm_hit.models import Assignment, Campaign, Category, Dataset
+from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.review import comments, facts, mending, queue
 from gtm_hit.ops.review.machine import Action
@@ -50,7 +52,7 @@ class Command(BaseCommand):
         assignment = assignment_with(dataset, options["id"])
         if what != "show":
             try:
-                act(assignment, what, user_named(options["by"]), options)
+                act(assignment, what, reviewer_named(options["by"], dataset), options)
             except OperationError as error:
                 raise CommandError(str(error)) from error
         told = facts.whole(assignment_with(dataset, assignment.pk))
@@ -104,12 +106,10 @@ def assignment_with(dataset: Dataset, pk: int | None) -> Assignment:
     return found
 
 
-def user_named(name: str | None) -> User:
-    if not name:
-        raise CommandError("say who decides: --by USER")
-    found = User.objects.filter(username=name).first()
+def reviewer_named(name: str | None, dataset: Dataset) -> User:
+    found = acting_as(name, Role.REVIEWER, dataset)
     if found is None:
-        raise CommandError(f"there is no user {name!r}")
+        raise CommandError("say who decides: --by USER")
     return found
 
 

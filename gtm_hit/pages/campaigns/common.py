@@ -8,6 +8,7 @@ from django.http import Http404, HttpResponse
 from django.utils.translation import gettext as _
 
 from gtm_hit.models import Campaign, Worker
+from gtm_hit.ops.campaigns import seats
 
 
 def campaign_or_404(slug: str, name: str) -> Campaign:
@@ -18,8 +19,7 @@ def campaign_or_404(slug: str, name: str) -> Campaign:
 
 
 def worker_or_404(campaign: Campaign, pseudonym: str) -> Worker:
-    found = Worker.objects.select_related("user").filter(pseudonym=pseudonym, platform=campaign.platform)
-    worker = found.first()
+    worker = seats.known(campaign).select_related("user").filter(pseudonym=pseudonym).first()
     if worker is None:
         raise Http404(_("There is no worker “%(name)s”.") % {"name": pseudonym})
     return worker

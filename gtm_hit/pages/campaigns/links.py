@@ -104,9 +104,11 @@ def change(request: StaffRequest, slug: str, name: str, pk: int) -> HttpResponse
     link = CampaignLink.objects.select_related("campaign").filter(pk=pk, campaign=campaign_or_404(slug, name))
     found = link.first()
     deed = {"revoke": links.revoke, "rotate": links.rotate}.get(request.POST.get("deed", ""))
-    if found is None or deed is None:
+    if found is None:
         raise Http404
     try:
+        if deed is None:
+            raise CampaignError(_("A link is revoked or given a new address; nothing was changed."), "deed")
         deed(found)
     except CampaignError as error:
         messages.error(request, str(error))

@@ -15,7 +15,7 @@ from django.views.decorators.http import require_http_methods, require_POST, req
 
 from gtm_hit.models import Campaign, Worker
 from gtm_hit.ops.access.roles import Role
-from gtm_hit.ops.campaigns import account, overview, standing, tables
+from gtm_hit.ops.campaigns import account, overview, seats, standing, tables
 from gtm_hit.ops.campaigns.errors import CampaignError
 from gtm_hit.ops.work import links
 from gtm_hit.ops.work.workers import MAX_ID
@@ -90,12 +90,12 @@ def done(campaign: Campaign, worker: Worker, deed: str, request: StaffRequest) -
             standing.forget(campaign, worker)
             return _("The rules for everybody count for this worker again.")
         case "revoke-links":
-            links.revoke_worker(worker)
+            seats.revoke(worker, request.user)
             return _("None of the worker's links opens anything any more. Send him a new personal link.")
         case "revoke-link":
             revoke_one(campaign, worker, request.POST.get("assignment", ""))
             return _("The batch's link was revoked; the worker finds a new one on his start page.")
-    raise Http404
+    raise CampaignError(_("There is nothing of that name to do with a worker; nothing was changed."), "deed")
 
 
 def revoke_one(campaign: Campaign, worker: Worker, pk: str) -> None:

@@ -13,6 +13,8 @@ from django.contrib.auth.models import User
 from django.test import Client
 
 from gtm_hit.models import Campaign, CampaignLink, Worker
+from gtm_hit.ops.access import granting
+from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.campaigns import accounts, editing, standing, states
 from gtm_hit.ops.campaigns import links as campaign_links
 from gtm_hit.ops.work import links
@@ -288,7 +290,8 @@ def test_a_worker_is_blocked_with_a_reason_and_let_in_again(
     assert "never moves the box" in page and boss.username in page
     client.post(address + "decide/", {"deed": "forget"})
     assert campaign.workers.count() == 1
-    assert client.post(address + "decide/", {"deed": "pay him"}).status_code == 404
+    refused = client.post(address + "decide/", {"deed": "pay him"}, follow=True)
+    assert "nothing was changed" in text(refused)
 
 
 def test_the_links_of_a_worker_and_of_a_batch_are_revoked(
@@ -314,6 +317,39 @@ def test_the_link_of_somebody_elses_batch_is_not_revoked_by_his_number(
     address = f"{BASE}walk/workers/{worked[1].pseudonym}/decide/"
     assert client.post(address, {"deed": "revoke-link", "assignment": theirs.pk}).status_code == 404
     assert worked[0].assignments.get().nonce == theirs.nonce
+
+
+def test_a_worker_of_another_dataset_is_not_there(client: Client, boss: User, campaign: Campaign) -> None:
+    other = make_campaign(make_dataset("other", frames=60))
+    stranger = make_worker("stranger")
+    claim(stranger, Pool(other.dataset, other))
+    nonce = stranger.nonce
+    address = f"{BASE}walk/workers/{stranger.pseudonym}/"
+    assert client.get(address).status_code == client.get(address + "batches.csv").status_code == 404
+    assert client.post(address + "decide/", {"deed": "revoke-links"}).status_code == 404
+    stranger.refresh_from_db()
+    assert stranger.nonce == nonce
+
+
+def test_all_links_end_only_where_the_manager_manages_everything(
+    client: Client, boss: User, campaign: Campaign, worked: list[Worker]
+) -> None:
+    other = make_campaign(make_dataset("other", frames=60))
+    claim(worked[1], Pool(other.dataset, other))
+    nonce = Worker.objects.get(pk=worked[1].pk).nonce
+    address = f"{BASE}walk/workers/{worked[1].pseudonym}/decide/"
+    assert "do not manage" in text(client.post(address, {"deed": "revoke-links"}, follow=True))
+    assert Worker.objects.get(pk=worked[1].pk).nonce == nonce
+    granting.grant(boss, Role.MANAGER, other.dataset)
+    client.post(address, {"deed": "revoke-links"})
+    assert Worker.objects.get(pk=worked[1].pk).nonce != nonce
+
+
+def test_an_unknown_deed_with_a_link_is_answered(client: Client, boss: User, campaign: Campaign) -> None:
+    client.post(f"{BASE}walk/links/", {"kind": "general"})
+    link = campaign.links.get()
+    answer = client.post(f"{BASE}walk/links/{link.pk}/", {"deed": "polish"}, follow=True)
+    assert "nothing was changed" in text(answer)
 
 
 # Tables
