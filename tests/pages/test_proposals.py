@@ -25,7 +25,7 @@ def own_tables(settings: Any, tmp_path: Path) -> None:
 
 @pytest.fixture
 def staff(client: Client, db: None) -> Client:
-    client.force_login(User.objects.create_user("ada", is_staff=True))
+    client.force_login(User.objects.create_user("ada", is_superuser=True))
     return client
 
 
