@@ -71,6 +71,7 @@ def resume_outboxes() -> None:
     sending.resume(timezone.now())
 
 
+@shared_task
 def score_assignment(assignment_id: int) -> None:
     computing.score_assignment(assignment_id)
 

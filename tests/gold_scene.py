@@ -13,7 +13,7 @@ from gtm_hit.ops.work import assignments
 from gtm_hit.ops.work.pools import Pool
 from gtm_hit.scoring.faults import ALL_KINDS, Positions
 from tests.scoring.people import walking
-from tests.work_scene import make_dataset, make_layer, make_worker
+from tests.work_scene import make_dataset, make_layer, make_worker, minutes_pass
 
 FRAMES = 20
 
@@ -64,7 +64,9 @@ def plant_everywhere(campaign: Campaign, layer: Layer, faults: int = 3, **values
 def take(campaign: Campaign, name: str = "alice") -> Assignment:
     """The next free batch, for a worker of that name."""
     worker = Worker.objects.filter(external_id=name).first() or make_worker(name)
-    return assignments.claim(worker, Pool(campaign.dataset, campaign))
+    taken = assignments.claim(worker, Pool(campaign.dataset, campaign))
+    minutes_pass(taken, 30)
+    return taken
 
 
 def places(layer: Layer) -> dict[int, Positions]:

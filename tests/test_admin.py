@@ -119,7 +119,7 @@ def test_a_lease_can_be_lengthened_by_hand_but_not_accepted(chief: Client, datas
 
 
 def test_staff_without_rights_sees_no_rows(client: Client, dataset: Dataset) -> None:
-    client.force_login(User.objects.create_user("vera", is_superuser=True))
+    client.force_login(User.objects.create_user("vera", is_staff=True))
     assert client.get("/admin/gtm_hit/save/").status_code == 403
 
 

@@ -118,7 +118,7 @@ class WorkerShape(serializers.Serializer[Any]):
     last_batch_at = serializers.DateTimeField(source="last_at", allow_null=True)
 
 
-class DecideSerializer(serializers.Serializer[Any]):
+class StandingSerializer(serializers.Serializer[Any]):
     deed = serializers.ChoiceField(choices=["invite", "block", "forget", "revoke_links", "revoke_link"])
     reason = serializers.CharField(max_length=standing.MAX_REASON, default="", allow_blank=True)
     assignment = serializers.IntegerField(min_value=1, required=False, help_text="for revoke_link")
@@ -143,12 +143,12 @@ class OneCampaignWorker(CampaignView):
         operation_id="decide_campaign_worker",
         summary="Invite or block a worker, or end the links that lead to his work",
         description="`worker` is a pseudonym, or the platform's id; inviting takes ids nobody knew yet.",
-        request=DecideSerializer,
+        request=StandingSerializer,
         responses=answers(204, None, WRITES),
     )
     def post(self, request: Request, slug: str, name: str, worker: str) -> Response:
         campaign = campaign_or_404(slug, name)
-        wanted = valid(DecideSerializer(data=request.data))
+        wanted = valid(StandingSerializer(data=request.data))
         try:
             self.decide(campaign, worker, wanted, request)
         except CampaignError as error:

@@ -59,14 +59,14 @@ class PayoutsSerializer(serializers.Serializer[Any]):
     )
 
 
-class DecideSerializer(serializers.Serializer[Any]):
+class OutboxDecisionSerializer(serializers.Serializer[Any]):
     action = serializers.ChoiceField(
         choices=["retry", "withdraw", "happened", "not_happened"],
         help_text="retry what failed, withdraw what is planned, say what became of what is unclear",
     )
 
 
-class DoneSerializer(serializers.Serializer[Any]):
+class HandedOverSerializer(serializers.Serializer[Any]):
     upto = serializers.IntegerField(min_value=0, max_value=LARGEST_ROW, help_text="last row of the file")
 
 
@@ -145,12 +145,12 @@ class OneRow(OutboxView):
     @extend_schema(
         operation_id="decide_outbox_row",
         summary="Decide about one row",
-        request=DecideSerializer,
+        request=OutboxDecisionSerializer,
         responses=answers(200, RowShape, ACTS),
     )
     def post(self, request: Request, slug: str, name: str, pk: int) -> Response:
         campaign = campaign_or_404(slug, name)
-        wanted = valid(DecideSerializer(data=request.data))
+        wanted = valid(OutboxDecisionSerializer(data=request.data))
         with refusals():
             rows.decide(row_or_404(campaign, pk), wanted["action"], caller(request))
         return Response(RowShape(row_or_404(campaign, pk)).data)
@@ -182,12 +182,12 @@ class HandoverDone(OutboxView):
         operation_id="handover_done",
         summary="Say that a file was carried out at the platform",
         parameters=[FILE],
-        request=DoneSerializer,
+        request=HandedOverSerializer,
         responses=answers(200, DoneShape, ACTS),
     )
     def post(self, request: Request, slug: str, name: str, what: str) -> Response:
         campaign = campaign_or_404(slug, name)
-        wanted = valid(DoneSerializer(data=request.data))
+        wanted = valid(HandedOverSerializer(data=request.data))
         try:
             return Response({"done": handover.done(campaign, what, wanted["upto"], caller(request))})
         except handover.HandoverError:

@@ -98,7 +98,7 @@ class MissingSerializer(serializers.Serializer[Any]):
     results = PlaceSerializer(many=True)
 
 
-class DecisionSerializer(serializers.Serializer[Any]):
+class MissingDecisionSerializer(serializers.Serializer[Any]):
     decision = serializers.ChoiceField(choices=["place", "nobody"])
     frame = serializers.IntegerField(min_value=0, max_value=LARGEST)
     position = serializers.IntegerField(min_value=0, max_value=LARGEST)
@@ -249,7 +249,7 @@ class MissingPeople(StaffView):
     @extend_schema(
         operation_id="decide_missing",
         summary="Place the missing person, or say that nobody is there",
-        request=DecisionSerializer,
+        request=MissingDecisionSerializer,
         responses={
             **answers(200, DecidedSerializer, WRITES),
             403: refusal("forbidden, or read_only: a worker's layer is changed by that worker only"),
@@ -257,7 +257,7 @@ class MissingPeople(StaffView):
     )
     def post(self, request: Request, slug: str, name: str) -> Response:
         layer = layer_or_404(request, slug, name)
-        wanted = valid(DecisionSerializer(data=request.data))
+        wanted = valid(MissingDecisionSerializer(data=request.data))
         where = (layer, wanted["frame"], wanted["position"])
         try:
             if wanted["decision"] == "nobody":

@@ -85,7 +85,7 @@ class TryShape(serializers.ModelSerializer[QualificationAttempt]):
         fields = ["worker", "number", "passed", "result", "started_at", "scored_at", "layer"]
 
 
-class DecisionSerializer(serializers.Serializer[Any]):
+class GrantSerializer(serializers.Serializer[Any]):
     worker = serializers.CharField(max_length=20, help_text="pseudonym")
     granted = serializers.BooleanField(help_text="false: revoked, which takes a reason")
     why = serializers.CharField(max_length=500, default="", allow_blank=True)
@@ -144,12 +144,12 @@ class Grants(StaffView, ListAPIView[QualificationGrant]):
     @extend_schema(
         operation_id="decide_qualification",
         summary="Grant a qualification by hand, or revoke it",
-        request=DecisionSerializer,
+        request=GrantSerializer,
         responses=answers(200, GrantShape, WRITES),
     )
     def post(self, request: Request, slug: str, name: str) -> Response:
         qualification = one_or_404(slug, name)
-        wanted = valid(DecisionSerializer(data=request.data))
+        wanted = valid(GrantSerializer(data=request.data))
         worker = Worker.objects.filter(pseudonym=wanted["worker"]).first()
         if worker is None:
             raise invalid("worker", f"There is no worker {wanted['worker']}.")

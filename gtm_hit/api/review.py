@@ -61,7 +61,7 @@ class ReviewsQuery(serializers.Serializer[Any]):
     list = serializers.ChoiceField(choices=["waiting", "returned", "decided", "appeals"], default="waiting")
 
 
-class DecisionSerializer(serializers.Serializer[Any]):
+class ReviewDecisionSerializer(serializers.Serializer[Any]):
     action = serializers.ChoiceField(choices=[action.value for action in BY_REVIEWERS])
     category = serializers.ChoiceField(choices=Category.choices, required=False, default="")
     reason = serializers.CharField(
@@ -163,12 +163,12 @@ class Decision(ReviewView):
         operation_id="decide_review",
         summary="Accept, return, reject, or decide an appeal",
         description="Nobody decides about his own work, and an appeal is decided by somebody else.",
-        request=DecisionSerializer,
+        request=ReviewDecisionSerializer,
         responses=answers(200, ANY, DECIDES),
     )
     def post(self, request: Request, slug: str, pk: int) -> Response:
         assignment = assignment_or_404(slug, pk)
-        wanted = valid(DecisionSerializer(data=request.data))
+        wanted = valid(ReviewDecisionSerializer(data=request.data))
         action = Action(wanted.pop("action"))
         transition(assignment, action, caller(request), **wanted)
         scope = queue.Scope(assignment.batch.dataset, assignment.batch.campaign)

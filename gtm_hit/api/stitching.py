@@ -52,7 +52,7 @@ class StartSerializer(CampaignQuery):
     return_reach = serializers.FloatField(default=running.Asked.return_reach, help_text="metres")
 
 
-class DecideSerializer(serializers.Serializer[Any]):
+class StitchDecisionSerializer(serializers.Serializer[Any]):
     decision = serializers.ChoiceField(choices=StitchConflict.Decision.choices)
 
 
@@ -217,12 +217,12 @@ class DecideConflict(StaffView):
         operation_id="decide_stitch_conflict",
         summary="The same person, or two",
         description="Remembered; the next run puts it into the layer.",
-        request=DecideSerializer,
+        request=StitchDecisionSerializer,
         responses=answers(200, ConflictShape, DECIDES),
     )
     def post(self, request: Request, slug: str, pk: int) -> Response:
         conflict = conflict_or_404(slug, pk)
-        wanted = valid(DecideSerializer(data=request.data))
+        wanted = valid(StitchDecisionSerializer(data=request.data))
         try:
             decided = conflicts.decide(conflict, wanted["decision"], caller(request))
         except StitchingError as error:

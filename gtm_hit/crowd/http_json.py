@@ -86,7 +86,7 @@ class HttpJson:
                 raise NotSent(f"No connection to {self.base}: {error}") from error
             try:
                 connection.request(
-                    method, urlsplit(self.base).path.rstrip("/") + path, body, self._headers(body)
+                    method, f"{urlsplit(self.base).path.rstrip('/')}/{path}", body, self._headers(body)
                 )
                 answer = connection.getresponse()
                 content = answer.read(MOST_BYTES + 1)

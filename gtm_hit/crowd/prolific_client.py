@@ -36,26 +36,26 @@ class ProlificClient:
 
     def create_study(self, draft: StudyDraft) -> Study:
         """A draft: nobody sees it and nothing is paid for."""
-        return study_of(self.http.post_for_answer("/api/v1/studies/", study_body(draft)))
+        return study_of(self.http.post_for_answer("api/v1/studies/", study_body(draft)))
 
     def study(self, identifier: str) -> Study:
-        return study_of(self.http.get(f"/api/v1/studies/{quoted(identifier)}/"))
+        return study_of(self.http.get(f"api/v1/studies/{quoted(identifier)}/"))
 
     def change_study(self, identifier: str, action: str) -> Study:
         """`publish`, `pause`, `resume` or `stop`."""
-        path = f"/api/v1/studies/{quoted(identifier)}/transition/"
+        path = f"api/v1/studies/{quoted(identifier)}/transition/"
         return study_of(self.http.post_for_answer(path, {"action": ACTIONS[action]}))
 
     def submissions(self, study: str) -> Iterator[WorkAtPlatform]:
         for page in range(1, MOST_PAGES):
             query: dict[str, str | int] = {"study": study, "page": page, "page_size": PAGE}
-            found = listed(self.http.get("/api/v1/submissions/", query))
+            found = listed(self.http.get("api/v1/submissions/", query))
             yield from (work_of(one) for one in found)
             if len(found) < PAGE:
                 return
 
     def submission(self, submission: str) -> WorkAtPlatform:
-        return work_of(self.http.get(f"/api/v1/submissions/{quoted(submission)}/"))
+        return work_of(self.http.get(f"api/v1/submissions/{quoted(submission)}/"))
 
     def approve(self, submission: str) -> None:
         self._transition(submission, {"action": "APPROVE"})
@@ -66,12 +66,12 @@ class ProlificClient:
         self._transition(submission, body)
 
     def request_return(self, submission: str, reasons: list[str]) -> None:
-        path = f"/api/v1/submissions/{quoted(submission)}/request-return/"
+        path = f"api/v1/submissions/{quoted(submission)}/request-return/"
         self.http.post(path, {"request_return_reasons": reasons})
 
     def set_up_bonuses(self, study: str, bonuses: list[Bonus]) -> str:
         body = {"study_id": study, "csv_bonuses": bonus_lines(bonuses)}
-        answer = self.http.post_for_answer("/api/v1/submissions/bonus-payments/", body)
+        answer = self.http.post_for_answer("api/v1/submissions/bonus-payments/", body)
         prepared = answer.get("id") if isinstance(answer, dict) else None
         if not isinstance(prepared, str) or not prepared:
             raise Unanswered("Prolific prepared a bonus and did not say under which number.")
@@ -79,11 +79,11 @@ class ProlificClient:
 
     def pay_bonuses(self, prepared: str) -> None:
         """Not idempotent. Prolific pays within some minutes of its answer."""
-        self.http.post(f"/api/v1/bulk-bonus-payments/{quoted(prepared)}/pay/", {})
+        self.http.post(f"api/v1/bulk-bonus-payments/{quoted(prepared)}/pay/", {})
 
     def make_secret(self, workspace: str) -> str:
         """What it signs its messages with. A workspace has one: making another ends the one before."""
-        answer = self.http.post_for_answer("/api/v1/hooks/secrets/", {"workspace_id": workspace})
+        answer = self.http.post_for_answer("api/v1/hooks/secrets/", {"workspace_id": workspace})
         secret = answer.get("value") if isinstance(answer, dict) else None
         if not isinstance(secret, str) or not secret:
             raise Unanswered("Prolific made a secret and did not tell it.")
@@ -92,14 +92,14 @@ class ProlificClient:
     def subscribe(self, workspace: str, event: str, target: str) -> None:
         """Have messages about an event sent to an address, and confirm that we want them."""
         body = {"workspace_id": workspace, "event_type": event, "target_url": target}
-        place = "/api/v1/hooks/subscriptions/"
+        place = "api/v1/hooks/subscriptions/"
         answer, secret = self.http.post_for_header(place, body, "X-Hook-Secret")
         if not isinstance(answer, dict) or not isinstance(answer.get("id"), str):
             raise Unanswered("Prolific did not say under which number it sends messages.")
         self.http.post(f"{place}{quoted(answer['id'])}/", {"secret": secret})
 
     def _transition(self, submission: str, body: Mapping[str, str]) -> None:
-        self.http.post(f"/api/v1/submissions/{quoted(submission)}/transition/", body)
+        self.http.post(f"api/v1/submissions/{quoted(submission)}/transition/", body)
 
 
 def bonus_lines(bonuses: list[Bonus]) -> str:

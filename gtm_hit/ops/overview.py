@@ -77,7 +77,10 @@ class BatchCounts:
 def batch_counts(dataset: Dataset) -> BatchCounts:
     """Of the batches made for the dataset itself; campaigns count their own."""
     held = Assignment.objects.filter(
-        batch__dataset=dataset, batch__campaign=None, state__in=Assignment.HOLDING
+        batch__dataset=dataset,
+        batch__campaign=None,
+        batch__qualification=None,
+        state__in=Assignment.HOLDING,
     )
     states = dict(
         # A lease that ran out holds nothing, though its row says so until the clock comes by.

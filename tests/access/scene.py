@@ -9,13 +9,14 @@ from django.contrib.auth.models import User
 from django.core.files.base import ContentFile
 from django.core.files.storage import default_storage
 
-from gtm_hit.models import Assignment, Dataset, Job, Layer, Release
+from gtm_hit.models import Assignment, Dataset, Job, Layer, ProposalRun, Release
 from gtm_hit.ops.access import granting
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.exports import exporting
 from gtm_hit.ops.ground import grid_files
 from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.work import assignments, batches, links
+from tests.access.campaign_scene import campaign_fills
 from tests.work_scene import make_dataset, make_layer, make_worker, row, save
 
 HERE, ELSEWHERE = "square", "elsewhere"
@@ -53,7 +54,8 @@ def make_place(slug: str) -> Place:
     layer, hidden = make_layer(dataset), make_layer(dataset, SECRET, Layer.Kind.GROUND_TRUTH, hidden=True)
     for each in (layer, hidden):
         save(each, dataset.frames.all()[0], [row()])
-    return Place(dataset, assignment, layer, hidden, fills_of(dataset, assignment, layer))
+    fills = fills_of(dataset, assignment, layer) | campaign_fills(dataset, layer, hidden)
+    return Place(dataset, assignment, layer, hidden, fills)
 
 
 def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str, str]:
@@ -73,7 +75,9 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
     picture = dataset.frames.all()[0].images.all()[0].light_digest
     default_storage.save(f"images/{picture[:2]}/{picture}.jpg", ContentFile(b"picture"))
     grid = grid_files.digest_of(dataset, dataset.calibrated_cameras()[0])
+    run = ProposalRun.objects.create(dataset=dataset, method=ProposalRun.Method.BACKGROUND, digest="0" * 64)
     return {
+        "proposals/<int:number>": f"proposals/{run.pk}",
         "datasets/<slug:slug>": f"datasets/{dataset.slug}",
         "layers/<str:name>": f"layers/{layer.name}",
         "layers/<int:layer>": f"layers/{layer.pk}",

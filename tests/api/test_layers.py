@@ -101,7 +101,7 @@ def test_the_scene_costs_the_same_for_many_frames(
 ) -> None:
     for frame in add_frames(layer.dataset, 40, images=True):
         save(layer, frame, [row()])
-    with django_assert_num_queries(11):  # two of them for the session
+    with django_assert_num_queries(12):  # two of them for the session, one for the proposals there are
         staff.get(base + "scene/")
 
 

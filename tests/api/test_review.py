@@ -10,12 +10,14 @@ from django.test import Client
 
 from gtm_hit.models import ApiToken, Assignment, Comment, Dataset, Transition
 from gtm_hit.ops import api_tokens
+from gtm_hit.ops.access import granting
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.review.transitions import transition
 from gtm_hit.ops.work import links
-from tests.ops.review.scene import REASON, into_campaign, make_reviewer, make_work, submitted
-from tests.work_scene import make_layer, make_worker, row, save
+from gtm_hit.ops.work.assignments import claim
+from tests.ops.review.scene import REASON, annotate, into_campaign, make_reviewer, make_work, submitted
+from tests.work_scene import finish, make_layer, make_worker, row, save
 
 pytestmark = pytest.mark.django_db
 BASE = "/api/v1/datasets/square/reviews/"
@@ -63,7 +65,8 @@ def test_the_queue_of_a_campaign_leaves_out_other_work(staff: Client, dataset: D
     work = submitted("alice", dataset)
     into_campaign(dataset)
     dataset.batches.exclude(pk=work.batch_id).update(campaign=None)
-    submitted("bob", dataset)
+    annotate(other := claim(make_worker("bob"), dataset))
+    finish(other)
     assert len(staff.get(BASE).json()["results"]) == 2
     assert [one["id"] for one in staff.get(f"{BASE}?campaign=spring").json()["results"]] == [work.pk]
     assert staff.get(f"{BASE}?campaign=autumn").status_code == 400
@@ -127,14 +130,10 @@ def test_strangers_and_workers_decide_nothing(client: Client, work: Assignment, 
     assert Transition.objects.count() == 1 and not Comment.objects.exists()
 
 
-def test_staff_without_the_role_is_kept_out(
-    staff: Client, work: Assignment, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def no_reviewers(_user: Any, role: Role, _dataset: Any = None) -> bool:
-        return role != Role.REVIEWER
-
-    for module in ("gtm_hit.api.common.authentication", "gtm_hit.pages.common.access"):
-        monkeypatch.setattr(f"{module}.may", no_reviewers)
+def test_staff_without_the_role_is_kept_out(client: Client, dataset: Dataset, work: Assignment) -> None:
+    staff, mona = client, User.objects.create_user("mona")
+    granting.grant(mona, Role.MAINTAINER, dataset)
+    staff.force_login(mona)
     assert staff.get(BASE).status_code == 403
     assert post(staff, f"{BASE}{work.pk}/decision/", {"action": "accept"}).status_code == 403
     for page in ("", f"{work.pk}/"):

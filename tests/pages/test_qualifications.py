@@ -169,12 +169,8 @@ def test_pictures_of_mistakes_are_for_the_worker_whose_try_it_is(
     other = f"/work/{links.worker_token(make_worker('bob'), campaign.dataset)}/"
     assert client.get(other + address.split("/", 3)[3]).status_code == 404
     assert client.get(re.sub(r"\d+-\d+-\d+\.jpg", "1900-1000-500.jpg", address)).status_code == 404
-    assert (
-        client.get(
-            address.replace(f"/{links.worker_token(alice, campaign.dataset)}/", "/nonsense/")
-        ).status_code
-        == 404
-    )
+    token = address.split("/")[2]
+    assert client.get(address.replace(f"/{token}/", "/nonsense/")).status_code == 404
 
 
 def test_without_tries_left_the_button_says_so(

@@ -75,6 +75,7 @@ class AssignmentComments(PlacedView):
         return listed(mine(request))
 
     @extend_schema(
+        operation_id="answer_comment",
         summary="Answer a comment",
         request=AnswerSerializer,
         responses={201: CommentsSerializer, **WRITES},
@@ -89,6 +90,7 @@ class AssignmentComments(PlacedView):
 
 class AssignmentComment(PlacedView):
     @extend_schema(
+        operation_id="resolve_comment",
         summary="Mark a comment as done, or as open again",
         request=DoneSerializer,
         responses={200: CommentsSerializer, **WRITES},

@@ -92,7 +92,11 @@ def reason_to_look(assignment: Assignment, suspicion: Suspicion | None) -> Revie
     if is_newcomer(assignment, campaign):
         return Why.NEWCOMER
     half = campaign.review_share / 2 if suspicion else 0.0
-    if suspicion and (suspicion.score >= ALARM or rank(assignment, campaign, suspicion.score) < half):
+    if (
+        suspicion
+        and suspicion.score > 0
+        and (suspicion.score >= ALARM or rank(assignment, campaign, suspicion.score) < half)
+    ):
         return Why.SUSPICION
     # Of those who are left, so many that both together come to the share.
     return Why.CHANCE if chance(assignment) < (campaign.review_share - half) / (1.0 - half) else Why.TRUSTED

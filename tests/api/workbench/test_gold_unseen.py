@@ -84,23 +84,24 @@ def test_single_frames_answer_alike_with_as_many_queries(
 def test_saves_answer_alike_with_as_many_queries(alice: Caller, assignment: Assignment) -> None:
     gold, ordinary = kinds(assignment)
     asked = []
-    for number in (gold[0], ordinary[0]):
+    # Whatever comes first begins the worker's clock.
+    for number in (ordinary[1], gold[0], ordinary[0]):
         address = f"/api/v1/assignment/frames/{number}/"
         revision = alice.get(address).json()["revision"]
         people = [row(person, place) for person, place in truth_of_square()[number].items()]
         with CaptureQueriesContext(connection) as queries:
             response = alice.put(address, body(revision, people, done=True))
         asked.append((response.status_code, shape(response.json()), len(queries)))
-    assert asked[0] == asked[1]
-    assert asked[0][0] == 200
+    assert asked[1] == asked[2]
+    assert asked[1][0] == 200
 
 
 def test_a_batch_with_gold_is_submitted_like_one_without(alice: Caller, assignment: Assignment) -> None:
     counted = []
     for person, caller in (("alice", alice), ("bob", None)):
         if caller is None:
-            GoldFrame.objects.all().delete()
             other = take(assignment.batch.campaign, person)
+            GoldFrame.objects.filter(frame__batches=other.batch).delete()
             caller, numbers = holder(other), other.batch.frames.order_by("number")
         else:
             numbers = assignment.batch.frames.order_by("number")

@@ -29,7 +29,7 @@ from tests.gold_scene import (
     truth_of_square,
 )
 from tests.ops.square_layer import export
-from tests.work_scene import make_layer
+from tests.work_scene import make_layer, make_worker
 
 pytestmark = pytest.mark.django_db
 
@@ -222,7 +222,7 @@ def test_batches_of_no_campaign_cost_no_query_more(scene: tuple[Campaign, Layer]
     with CaptureQueriesContext(
         connection,
     ) as queries:
-        take(campaign)
+        assignments.claim(make_worker("alice"), campaign.dataset)
     assert not [query for query in queries if "planting" in query["sql"]]
 
 

@@ -123,7 +123,7 @@ def test_a_try_is_nobodys_ordinary_work(campaign: Campaign, basics: Qualificatio
     assignment = hand_in(attempts.begin(basics, alice), truth_of_square())
     assert Batch.objects.count() == before
     assert not assignments.finished(alice, dataset).exists()
-    assert assignments.claim(alice, dataset).batch.number == 1
+    assert assignments.claim(alice, Pool(dataset, campaign)).batch.number == 1
     assert assignment.batch.number == 0
 
 

@@ -19,12 +19,13 @@ from hypothesis.stateful import (
 )
 
 from gtm_hit.models import Appeal, Assignment, Category, Transition, Worker
+from gtm_hit.ops.access.roles import Role, may
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.review import mending
 from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.review.transitions import transition
 from gtm_hit.ops.work import assignments
-from tests.ops.review.scene import REASON, into_campaign, make_reviewer, make_work, run_out
+from tests.ops.review.scene import REASON, into_campaign, make_reviewer, make_work, pool, run_out
 from tests.work_scene import do_frames, make_worker
 
 # Written out once more, by hand: the table must not be its own judge.
@@ -98,8 +99,8 @@ class Reviewing(RuleBasedStateMachine):
     @rule(who=st.integers(0, 2), whole=st.booleans())
     def work(self, who: int, whole: bool) -> None:
         """Mostly whole batches, so that there is something to decide about."""
-        self.try_step("claim", lambda: assignments.claim(self.workers[who], self.dataset))
-        mine = assignments.current(self.workers[who], self.dataset)
+        self.try_step("claim", lambda: assignments.claim(self.workers[who], pool(self.dataset)))
+        mine = assignments.current(self.workers[who], pool(self.dataset))
         if mine and whole:
             do_frames(mine)
             self.try_step("submit", lambda: assignments.submit(mine))
@@ -210,7 +211,7 @@ class Reviewing(RuleBasedStateMachine):
             elif one.action in BY_SYSTEM:
                 assert one.worker_id is None and one.user is None
             else:
-                assert one.user is not None and one.user.is_staff
+                assert one.user is not None and may(one.user, Role.REVIEWER, self.dataset)
                 assert one.user.username != one.assignment.worker.external_id, "reviewed his own work"
 
     @invariant()
