@@ -10,7 +10,8 @@ import numpy as np
 from django.utils.translation import gettext as _
 
 from gtm_hit.geometry.camera import Camera
-from gtm_hit.models import Dataset, Frame, Layer, ProposalFrame, ProposalRun
+from gtm_hit.geometry.grid import Grid
+from gtm_hit.models import Dataset, Frame, Layer, Proposal, ProposalFrame, ProposalRun
 from gtm_hit.ops.frames import saving
 from gtm_hit.ops.frames.row import Row
 from gtm_hit.ops.frames.saving import Author
@@ -23,6 +24,8 @@ from gtm_hit.vision.background import Backgrounds, Pictures
 from gtm_hit.vision.boxes import Box
 from gtm_hit.vision.snap import USUAL, Marks, snap
 
+CERTAIN = 0.7  # of a proposal's score: somebody is there
+MARKED = 0.5  # metres between a proposal and a mark of the same person
 UNSEEN = "unseen"  # no detector has looked at the frame
 SNAPPING = "finding where people stand"
 GROUP = 40  # frames that share a background
@@ -51,6 +54,7 @@ class Sights:
     cameras: Mapping[str, Camera]
     boxes: Mapping[str, list[Box]]
     foregrounds: Mapping[str, np.ndarray]
+    proposed: Sequence[Mark] = ()
 
 
 def snap_mark(layer: Layer, frame: Frame, mark: Mark, others: Sequence[Mark]) -> SnappedMark:
@@ -64,18 +68,33 @@ def snap_mark(layer: Layer, frame: Frame, mark: Mark, others: Sequence[Mark]) ->
 
 
 def snapped(dataset: Dataset, sights: Sights | None, mark: Mark, others: Sequence[Mark]) -> SnappedMark:
+    """Proposals explain the boxes of those who are not marked yet: else theirs would pull the first mark."""
     if sights is None:
         return SnappedMark(mark.position, 0.0, 0.0, UNSEEN)
     grid = dataset.grid
-    everybody = (mark, *others)
+    everybody = (mark, *others, *unmarked(grid, sights.proposed, mark, others))
     xy = grid.metres([each.position for each in everybody])
     bodies = np.column_stack((xy, [each.height or USUAL for each in everybody]))
     found = snap(Marks(bodies[0], bodies[1:]), sights.boxes, sights.cameras, sights.foregrounds)
     place = np.array([(found.x, found.y)])
     position = int(grid.position(place)[0])
-    if found.refused is not None or position < 0 or position in {each.position for each in others}:
+    if found.refused is not None or position < 0 or position in {each.position for each in everybody[1:]}:
         return SnappedMark(mark.position, 0.0, found.gain, found.refused or "near")
     return SnappedMark(position, float(np.hypot(*(place[0] - bodies[0, :2]))), found.gain)
+
+
+def unmarked(grid: Grid, proposed: Sequence[Mark], mark: Mark, others: Sequence[Mark]) -> list[Mark]:
+    """Proposals of people who are neither marked nor the one meant, who is the one nearest to the mark."""
+    if not proposed:
+        return []
+    places = grid.metres([each.position for each in proposed])
+    marked = grid.metres([each.position for each in others])
+    away = places[:, None] - marked[None]
+    free = np.hypot(away[..., 0], away[..., 1]).min(axis=1, initial=np.inf) > MARKED
+    off = np.hypot(*(places - grid.metres([mark.position])[0]).T)
+    if free.any():
+        free[np.flatnonzero(free)[off[free].argmin()]] = False
+    return [each for each, rest in zip(proposed, free.tolist(), strict=True) if rest]
 
 
 def _sights(
@@ -88,7 +107,9 @@ def _sights(
     cameras = {each.name: each for each in run.dataset.calibrated_cameras() if each.name not in wrong}
     known = {name: found for name, found in boxes.items() if name in cameras}
     masks = {name: mask for name, mask in foregrounds.items() if name in cameras}
-    return Sights(cameras, known, masks) if known else None
+    sure = looked.people.filter(score__gte=CERTAIN, filled=False) if looked else Proposal.objects.none()
+    proposed = [Mark(*values) for values in sure.values_list("position", "height")]
+    return Sights(cameras, known, masks, proposed) if known else None
 
 
 @dataclass(frozen=True)
