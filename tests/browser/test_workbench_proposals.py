@@ -139,21 +139,26 @@ def test_a_click_snaps_to_the_feet_and_not_with_shift_until_the_key_says_so(prop
     x, y = GRID.metres([position])[0]
     beside = int(GRID.position([(x + 0.25, y)])[0])
     ready(proposed)
-    moved = proposed.page.locator(".notices, [role=status]").filter(has_text="Moved by").first
-    proposed.click(best_view(position), beside)
-    expect(moved).to_be_visible()
-    assert metres_apart(proposed.stored()[0].position, position) < 0.06
+
+    def answered(act: Callable[[], None]) -> float:
+        """Metres between the person and the place of the boxes, once the server has said where they are."""
+        with proposed.page.expect_response(lambda answer: answer.url.endswith("/snap/")):
+            act()
+        proposed.painted()
+        return away()
+
+    def away() -> float:
+        return metres_apart(proposed.stored()[0].position, position)
+
+    assert answered(lambda: proposed.click(best_view(position), beside)) < 0.06
     proposed.press("Control+z")
-    assert 0.2 < metres_apart(proposed.stored()[0].position, position) < 0.3
-    proposed.press("Shift+d")
-    proposed.page.wait_for_timeout(300)
-    assert metres_apart(proposed.stored()[0].position, position) < 0.06
+    assert 0.2 < away() < 0.3
+    assert answered(lambda: proposed.press("Shift+d")) < 0.06
     proposed.press("Delete")
     proposed.page.keyboard.down("Shift")
     proposed.click(best_view(position), beside)
     proposed.page.keyboard.up("Shift")
-    proposed.page.wait_for_timeout(300)
-    assert metres_apart(proposed.stored()[0].position, position) > 0.2
+    assert away() > 0.2
 
 
 def test_a_frame_nobody_is_proposed_in_works_as_ever(bench: Callable[..., Bench]) -> None:
