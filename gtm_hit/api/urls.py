@@ -35,7 +35,7 @@ from gtm_hit.api.workbench import decision, frames, tutorial
 from gtm_hit.api.workbench.grids import GridView
 from gtm_hit.api.workbench.images import ImageView
 from gtm_hit.api.workbench.places import IN_LAYER, layer_start_place
-from gtm_hit.api.workbench.proposals import ProposalsView, RefusalsView
+from gtm_hit.api.workbench.proposals import ProposalsView, RefusalsView, SnapView
 from gtm_hit.api.workbench.rectangles import RectanglesView
 from gtm_hit.api.workbench.submission import SubmitView
 
@@ -52,6 +52,7 @@ assignment = [
     path("rectangles/", RectanglesView.as_view()),
     path("proposals/", gzip_page(ProposalsView.as_view())),
     path("refusals/", RefusalsView.as_view()),
+    path("snap/", SnapView.as_view()),
     path("submit/", SubmitView.as_view()),
     path("comments/", decision.AssignmentComments.as_view()),
     path("comments/<int:pk>/", decision.AssignmentComment.as_view()),
@@ -67,6 +68,7 @@ layer = [
     path("rectangles/", RectanglesView.as_view(**IN_LAYER)),
     path("proposals/", gzip_page(ProposalsView.as_view(**IN_LAYER))),
     path("refusals/", RefusalsView.as_view(**IN_LAYER)),
+    path("snap/", SnapView.as_view(**IN_LAYER)),
 ]
 # The same for a part of a long layer: the workbench opens no more of it.
 one_part = [
@@ -77,6 +79,7 @@ one_part = [
     path("rectangles/", RectanglesView.as_view(**IN_LAYER, schema=None)),
     path("proposals/", gzip_page(ProposalsView.as_view(**IN_LAYER, schema=None))),
     path("refusals/", RefusalsView.as_view(**IN_LAYER, schema=None)),
+    path("snap/", SnapView.as_view(**IN_LAYER, schema=None)),
 ]
 learning = [
     path("scene/", gzip_page(tutorial.TutorialScene.as_view())),

@@ -18,6 +18,7 @@ class ProposalRun(models.Model):
         BACKGROUND = "background", "background alone"
         POM = "pom", "probabilistic occupancy map"
         PROJECTED = "projected", "detections, projected and clustered"
+        LOCATED = "located", "places of a multi-view model"
         FILE = "file", "read from a file"
 
     dataset = models.ForeignKey(Dataset, on_delete=models.CASCADE, related_name="proposal_runs")

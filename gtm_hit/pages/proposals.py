@@ -37,7 +37,13 @@ def detector_choices() -> list[tuple[str, str]]:
         detectors.BUILT_IN: _("the built-in one, on this server"),
         detectors.NONE: _("none: the background alone"),
     }
-    return [(name, named.get(name, name)) for name in detectors.choices()]
+    return [(name, named.get(name) or _detector_title(name)) for name in detectors.choices()]
+
+
+def _detector_title(name: str) -> str:
+    if name.startswith(detectors.PLUGIN):
+        return _("%(name)s, installed on this server") % {"name": name.removeprefix(detectors.PLUGIN)}
+    return _("%(address)s: pictures are sent there") % {"address": name}
 
 
 class ProposeForm(forms.Form):

@@ -140,14 +140,7 @@ class _Search:
         return np.asarray((np.hypot(away[..., 0], away[..., 1]) >= self.settings.apart).all(axis=1))
 
     def _matches(self) -> list[Match]:
-        """The boxes of each body taken: of every view the assignment that is worth most together."""
-        matches: list[Match] = [{} for _ in self.taken]
-        for name, sight in self.sights.items():
-            gain = sight.worths(sight.expected(self.taken))
-            for body, box in zip(*linear_sum_assignment(-gain), strict=True):
-                if gain[body, box] > 0:
-                    matches[body][name] = int(box)
-        return matches
+        return matches_of(self.sights, self.taken)
 
     def settle(self) -> None:
         """Fit all to their boxes; let go, worst first, who then is not worth enough."""
@@ -216,3 +209,14 @@ class _Search:
         rows = zip(self.taken, self.worth(matches).tolist(), matches, self.spread, strict=True)
         people = [Body(each[:2], float(each[2]), worth, boxes, spread) for each, worth, boxes, spread in rows]
         return sorted(people, key=lambda body: -body.worth)
+
+
+def matches_of(sights: Mapping[str, Sight], bodies: Floats) -> list[Match]:
+    """The boxes of each body: of every view the assignment that is worth most together."""
+    matches: list[Match] = [{} for _ in bodies]
+    for name, sight in sights.items():
+        gain = sight.worths(sight.expected(bodies))
+        for body, box in zip(*linear_sum_assignment(-gain), strict=True):
+            if gain[body, box] > 0:
+                matches[body][name] = int(box)
+    return matches

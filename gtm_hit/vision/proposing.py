@@ -17,10 +17,12 @@ from gtm_hit.geometry.camera import Camera, Floats
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.vision.background import Backgrounds, Pictures
-from gtm_hit.vision.boxes import Box, Detector
+from gtm_hit.vision.boxes import Box, Detector, Picture
 from gtm_hit.vision.cover import Body, CoverSettings, Places, cover
+from gtm_hit.vision.detectors.errors import DetectorError
 from gtm_hit.vision.disagreement import agreements, alarm, suspect
 from gtm_hit.vision.evidence import Foregrounds, evidence_for
+from gtm_hit.vision.located import Locator
 from gtm_hit.vision.people import CameraAlarm, FrameProposals, Proposal
 from gtm_hit.vision.placing import placed, steps_of
 from gtm_hit.vision.pom import Frames, PomSettings, occupancy, peaks
@@ -39,6 +41,7 @@ class Method(StrEnum):
     BACKGROUND = "background"  # no detector: peaks of the occupancy map, placed by the background
     POM = "pom"  # the occupancy map as published
     PROJECTED = "projected"  # feet of the detector's boxes, clustered
+    LOCATED = "located"  # places are a model's own that looks at all views at once
 
 
 @dataclass(frozen=True)
@@ -64,33 +67,42 @@ class Proposer:
         self,
         scene: Scene,
         method: Method,
-        detector: Detector | None,
+        detector: Detector | Locator | None,
         settings: Settings,
         backgrounds: Backgrounds | None = None,
     ) -> None:
-        self.scene, self.detector, self.settings = scene, detector, settings
+        self.scene, self.settings = scene, settings
+        self.locator = detector if isinstance(detector, Locator) else None
+        self.detector = None if isinstance(detector, Locator) else detector
         self.method = usable_method(method, detector)
         self.backgrounds = backgrounds or Backgrounds({})
         if self.method is Method.COVER:
             self._places = Places(scene.cameras, scene.grid, settings.cover)
-        elif self.method is not Method.PROJECTED:
+        elif self.method in (Method.BACKGROUND, Method.POM):
             self._positions, self._frames = _occupancy_grid(scene, settings.pom)
 
     def boxes(self, pictures: Pictures) -> dict[str, list[Box]]:
         """The detector's boxes, in pixels of the calibrated pictures; may be kept per picture and version."""
         if self.detector is None:
             return {}
-        return {
-            name: _scaled(self.detector.detect(picture), self.scene.cameras[name].width / picture.shape[1])
-            for name, picture in pictures.items()
-        }
+        return {name: self._detected(self.detector, name, picture) for name, picture in pictures.items()}
 
-    def frame(self, pictures: Pictures, boxes: Boxes | None = None) -> FrameProposals:
+    def _detected(self, detector: Detector, name: str, picture: Picture) -> list[Box]:
+        try:
+            return _scaled(detector.detect(picture), self.scene.cameras[name].width / picture.shape[1])
+        except DetectorError as error:
+            raise DetectorError(f"{name}: {error}") from error
+
+    def frame(self, pictures: Pictures, boxes: Boxes | None = None, number: int = 0) -> FrameProposals:
         """Of one frame; `boxes` are those of `boxes(pictures)`, found now unless given."""
         looks = self.method in (Method.COVER, Method.PROJECTED)
         boxes = (self.boxes(pictures) if boxes is None else boxes) if looks else {}
         masks = {} if self.method is Method.PROJECTED else self._foregrounds(pictures)
-        bodies, suspicious = self._bodies(boxes, masks)
+        suspicious: tuple[CameraAlarm, ...] = ()
+        if self.locator is not None and self.method is Method.LOCATED:
+            bodies = self._located(self.locator, pictures, number)
+        else:
+            bodies, suspicious = self._bodies(boxes, masks)
         inside = [body for body in bodies if self.scene.grid.position(body.xy[None])[0] >= 0]
         people = self._proposals(inside, boxes, masks, bodies)
         return FrameProposals(tuple(each for each in people if each.score >= self.settings.least), suspicious)
@@ -129,6 +141,11 @@ class Proposer:
             alarms.append(wrong)
             left, bodies = fewer, without
         return bodies, tuple(alarms)
+
+    def _located(self, locator: Locator, pictures: Pictures, number: int) -> list[Body]:
+        height = self.scene.cylinder.height
+        found = locator.locate(pictures, self.scene.cameras, self.scene.grid, number)
+        return [Body(np.array([x, y]), height, _worth(score), {}, np.eye(2) * 0.04) for x, y, score in found]
 
     def _occupied(self, masks: Foregrounds) -> list[Body]:
         if not masks:
@@ -188,9 +205,12 @@ def propose(
     return found
 
 
-def usable_method(method: Method | str, detector: Detector | None) -> Method:
-    """The method that can be used: without a detector the background is all there is."""
+def usable_method(method: Method | str, detector: Detector | Locator | None) -> Method:
+    """The method that can be used: without a detector the background is all there is, and who says places
+    needs no boxes."""
     wanted = Method(method)
+    if isinstance(detector, Locator):
+        return Method.LOCATED if wanted is Method.COVER else wanted
     return Method.BACKGROUND if detector is None and wanted is Method.COVER else wanted
 
 

@@ -77,6 +77,8 @@
  * @property {Evidence[]} evidence
  * @typedef {{number: number, people: Proposed[], refused: number[]}} ProposedFrame
  * @typedef {{run: number|null, threshold: number, frames: ProposedFrame[]}} ProposalsAnswer
+ * @typedef {{position: number, metres: number, gain: number,
+ *            refused: ""|"unseen"|"nothing"|"small"|"near"}} SnapAnswer
  *
  * @typedef {{batch: string, frames: {number: number, people: number}[], annotations: number, minutes: number,
  *            submitted_at: string|null}} Summary

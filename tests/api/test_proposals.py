@@ -69,6 +69,32 @@ def test_a_refusal_that_cannot_be_changes_nothing(annotator: Caller, body: Any, 
     assert not Refusal.objects.exists()
 
 
+def test_a_mark_is_put_right_only_where_a_detector_has_looked(annotator: Caller) -> None:
+    body = {"frame": 0, "position": 77, "others": [{"position": 90, "height": 1.5}]}
+    told = annotator.post("/api/v1/assignment/snap/", body).json()
+    assert told == {"position": 77, "metres": 0.0, "gain": 0.0, "refused": "unseen"}
+    assert Annotation.objects.count() == 0
+
+
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [
+        ({"frame": 20, "position": 77, "others": []}, 404),  # of another batch
+        ({"frame": 0, "position": 10**6, "others": []}, 400),
+        ({"frame": 0, "position": 77, "others": [{"position": 10**6}]}, 400),
+        ({"frame": 0, "position": 77, "height": -1, "others": []}, 400),
+        ({"frame": 0, "position": 77}, 400),
+    ],
+)
+def test_a_mark_that_cannot_be_is_refused(annotator: Caller, body: Any, status: int) -> None:
+    assert annotator.post("/api/v1/assignment/snap/", body).status_code == status
+
+
+def test_strangers_put_nothing_right(stranger: Caller, run: ProposalRun) -> None:
+    address = f"/api/v1/layers/{make_layer(run.dataset).pk}/snap/"
+    assert stranger.post(address, {"frame": 0, "position": 1, "others": []}).status_code == 401
+
+
 def test_staff_see_them_on_any_layer_and_strangers_nowhere(
     staff: Caller, stranger: Caller, run: ProposalRun
 ) -> None:

@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from gtm_hit.models import ProposalRun, Refusal
+from gtm_hit.models import PictureBoxes, ProposalRun, Refusal
 from gtm_hit.ops.proposals import runs
+from gtm_hit.ops.proposals.pictures import pictures_of
 from gtm_hit.ops.proposals.proposing import keep
 from gtm_hit.ops.proposals.tracks import link_run
+from gtm_hit.vision.bodies import body_boxes
 from gtm_hit.vision.people import Evidence, FrameProposals, Proposal
 from tests.browser.bench import Bench, best_view, metres_apart
 from tests.browser.street import GRID, Street
@@ -116,6 +118,47 @@ def test_doubtful_ones_come_close_up_the_most_doubtful_first(proposed: Bench) ->
     proposed.saved()
     assert {row.state for row in proposed.stored()} == {"validated"}
     assert Refusal.objects.count() == 1
+
+
+def boxed(made: Bench, person: int) -> int:
+    """Their position in the first frame, where every view has a box of them and nobody else is proposed."""
+    run, frame = runs.in_use(made.street.dataset), made.street.frames[0]
+    assert run is not None
+    run.frames.get(frame=frame).people.all().delete()
+    position = int(made.street.truth[0][person])
+    digests = pictures_of([frame])[frame.pk].digests
+    for camera in made.street.dataset.calibrated_cameras():
+        seen = body_boxes(camera, GRID.metres([position]), 0.2, 1.72)
+        boxes = [[*seen.boxes[0].tolist(), 0.9]] if seen.share[0] > 0.5 else []
+        PictureBoxes.objects.create(picture=digests[camera.name], model=run.model, boxes=boxes)
+    return position
+
+
+def test_a_click_snaps_to_the_feet_and_not_with_shift_until_the_key_says_so(proposed: Bench) -> None:
+    position = boxed(proposed, 3)
+    x, y = GRID.metres([position])[0]
+    beside = int(GRID.position([(x + 0.25, y)])[0])
+    ready(proposed)
+
+    def answered(act: Callable[[], None]) -> float:
+        """Metres between the person and the place of the boxes, once the server has said where they are."""
+        with proposed.page.expect_response(lambda answer: answer.url.endswith("/snap/")):
+            act()
+        proposed.painted()
+        return away()
+
+    def away() -> float:
+        return metres_apart(proposed.stored()[0].position, position)
+
+    assert answered(lambda: proposed.click(best_view(position), beside)) < 0.06
+    proposed.press("Control+z")
+    assert 0.2 < away() < 0.3
+    assert answered(lambda: proposed.press("Shift+d")) < 0.06
+    proposed.press("Delete")
+    proposed.page.keyboard.down("Shift")
+    proposed.click(best_view(position), beside)
+    proposed.page.keyboard.up("Shift")
+    assert away() > 0.2
 
 
 def test_a_frame_nobody_is_proposed_in_works_as_ever(bench: Callable[..., Bench]) -> None:

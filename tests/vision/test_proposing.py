@@ -58,10 +58,13 @@ def test_boxes_that_were_kept_give_the_same_people() -> None:
 @pytest.mark.parametrize("method", ["cover", "pom"])
 def test_without_a_detector_the_background_finds_them(method: str) -> None:
     found = propose([pictures(each, seed) for seed, each in enumerate(WALK)], CAMERAS, GRID, method=method)
-    truth = np.array([person[:2] for person in WALK[3]])
-    places = np.array([(each.x, each.y) for each in found[3].people])
-    assert len(places) <= 3  # the map may double somebody
-    assert np.hypot(*(truth[:, None] - places[None]).transpose(2, 0, 1)).min(axis=1).max() < 0.3
+    # In frame 3 they pass each other: a third rectangle between them does explain what rectangles 20 cm apart
+    # leave of two ellipses, by the published energy, too (1111 with it, 1161 without).
+    assert [len(frame.people) for frame in found] == [2, 2, 2, 3, 2, 2]
+    for frame, people in zip(found, WALK, strict=True):
+        truth = np.array([person[:2] for person in people])
+        places = np.array([(each.x, each.y) for each in frame.people])
+        assert np.hypot(*(truth[:, None] - places[None]).transpose(2, 0, 1)).min(axis=1).max() < 0.35
 
 
 def test_cover_without_a_detector_is_the_background() -> None:

@@ -15,8 +15,10 @@ from gtm_hit.api.common.refusals import REFUSALS, refusal, valid
 from gtm_hit.api.common.staff import invalid
 from gtm_hit.api.workbench.places import PlacedView
 from gtm_hit.ops.frames.neighbours import Neighbours, neighbours
-from gtm_hit.ops.proposals import reading, refusals
+from gtm_hit.ops.proposals import reading, refusals, snapping
 from gtm_hit.ops.proposals.errors import ProposalError
+
+MOST_OTHERS = 1000
 
 
 class EvidenceSerializer(serializers.Serializer[Any]):
@@ -60,6 +62,31 @@ class RefusalSerializer(serializers.Serializer[Any]):
     refused = StrictBooleanField(default=True, help_text="false: takes it back")
 
 
+class MarkSerializer(serializers.Serializer[Any]):
+    position = serializers.IntegerField(min_value=0, max_value=LARGEST)
+    height = serializers.FloatField(
+        min_value=0.3, max_value=3, allow_null=True, default=None, help_text="metres; null: as tall as usual"
+    )
+
+
+class SnapSerializer(MarkSerializer):
+    frame = serializers.IntegerField(min_value=0, max_value=LARGEST)
+    others = serializers.ListField(
+        child=MarkSerializer(), max_length=MOST_OTHERS, help_text="everybody else who is marked in the frame"
+    )
+
+
+class SnappedSerializer(serializers.Serializer[Any]):
+    position = serializers.IntegerField()
+    metres = serializers.FloatField(help_text="from where it was marked")
+    gain = serializers.FloatField(help_text="of what the views say; a box that fits is worth up to 1")
+    refused = serializers.ChoiceField(
+        choices=["", "unseen", "nothing", "small", "near"],
+        help_text="why the mark stays: no detector has looked, no view shows anybody, it is about as good "
+        "where it is, somebody else stands there",
+    )
+
+
 class ProposalsView(PlacedView):
     @extend_schema(
         summary="People whom programs propose, never annotations by themselves",
@@ -99,3 +126,26 @@ class RefusalsView(PlacedView):
         except ProposalError as error:
             raise invalid("position", error) from error
         return Response(wanted)
+
+
+class SnapView(PlacedView):
+    @extend_schema(
+        summary="Where somebody marked roughly seems to stand; changes nothing",
+        description="By the boxes of the run that is shown; at most half a metre away.",
+        request=SnapSerializer,
+        responses={
+            200: SnappedSerializer,
+            400: refusal("invalid; details: a list of place and reason"),
+            **REFUSALS,
+        },
+    )
+    def post(self, request: Request, **kwargs: Any) -> Response:
+        place = self.place(**kwargs)
+        wanted = valid(SnapSerializer(data=request.data))
+        frame = place.frame(wanted["frame"])
+        mark = snapping.Mark(wanted["position"], wanted["height"])
+        others = [snapping.Mark(**each) for each in wanted["others"]]
+        try:
+            return Response(asdict(snapping.snap_mark(place.layer, frame, mark, others)))
+        except ProposalError as error:
+            raise invalid("position", error) from error

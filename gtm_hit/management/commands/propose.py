@@ -1,7 +1,8 @@
 from __future__ import annotations
 
 import json
-from argparse import ArgumentParser
+from argparse import ArgumentParser, ArgumentTypeError
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -38,10 +39,21 @@ class Command(BaseCommand):
             "--detector",
             default=detectors.BUILT_IN,
             metavar="NAME",
-            help=f"{detectors.BUILT_IN}, {detectors.NONE}, or an address of DETECTOR_ADDRESSES (%(default)s)",
+            help=f"{detectors.BUILT_IN}, {detectors.NONE}, an address of DETECTOR_ADDRESSES, or "
+            f"{detectors.PLUGIN}NAME of an installed package (%(default)s)",
         )
         source.add_argument("--detector-file", type=Path, metavar="FILE", help="Python with create() in it")
         source.add_argument("--detector-module", metavar="MODULE", help="the same as an installed module")
+        parser.add_argument(
+            "-p",
+            "--detector-parameter",
+            dest="params",
+            action="append",
+            default=[],
+            type=_parameter,
+            metavar="NAME=TYPE:VALUE",
+            help="of create(); TYPE is int, float, str or bool",
+        )
         source.add_argument(
             "--from-file", type=Path, metavar="PATH", help="people somebody else's program found"
         )
@@ -75,7 +87,8 @@ class Command(BaseCommand):
     ) -> tuple[ProposalRun, Proposed]:
         if options["from_file"]:
             return from_files.take_in(dataset, options["from_file"], options["format"], progress)
-        return job.do(dataset, job.Order(options["method"], _detector(options), use=False), progress)
+        order = job.Order(options["method"], _detector(options), use=False)
+        return job.do(dataset, order, progress, params=dict(options["params"]))
 
     def tell(self, run: ProposalRun, proposed: Proposed, options: dict[str, Any]) -> None:
         seconds = runs.seconds_of(run)
@@ -97,3 +110,25 @@ def _detector(options: dict[str, Any]) -> str:
     if options["detector_module"]:
         return f"{detectors.MODULE}{options['detector_module']}"
     return str(options["detector"])
+
+
+def _parameter(text: str) -> tuple[str, str | int | float | bool]:
+    """As CVAT's command line writes them."""
+    name, _equals, rest = text.partition("=")
+    kind, _colon, value = rest.partition(":")
+    try:
+        return name, TYPES[kind](value)
+    except (KeyError, ValueError) as error:
+        raise ArgumentTypeError(f"{text!r} is not NAME=TYPE:VALUE with one of {', '.join(TYPES)}") from error
+
+
+def _bool(value: str) -> bool:
+    return {"true": True, "1": True, "false": False, "0": False}[value.lower()]
+
+
+TYPES: dict[str, Callable[[str], str | int | float | bool]] = {
+    "int": int,
+    "float": float,
+    "str": str,
+    "bool": _bool,
+}

@@ -15,8 +15,10 @@ from gtm_hit.ops.jobs.progress import Progress, no_progress, steps
 from gtm_hit.ops.proposals import detectors, looking, runs
 from gtm_hit.ops.proposals.errors import ProposalError
 from gtm_hit.ops.proposals.proposing import Proposed, propose
+from gtm_hit.vision.detectors import Params
 
-METHODS = [name for name in ProposalRun.Method.values if name != ProposalRun.Method.FILE.value]
+# A file's people and a model's own places are not asked for by method: they come of what is asked.
+METHODS = [name for name in ProposalRun.Method.values if name not in ("file", "located")]
 
 
 @dataclass(frozen=True)
@@ -53,9 +55,11 @@ def start_by_itself(dataset: Dataset) -> Job | None:
     run = ProposalRun.objects.filter(dataset=dataset, in_use=True).first()
     if run is None:
         return start(dataset, Order())
-    if run.method not in METHODS or not _left(run):
-        return None  # a file says nothing about new frames
-    return start(dataset, Order(run.parameters.get("asked", run.method), run.parameters["detector"]))
+    asked = run.parameters.get("asked", run.method)
+    detector = run.parameters.get("detector")
+    if asked not in METHODS or detector not in detectors.choices() or not _left(run):
+        return None  # a file says nothing about new frames, and what a command named is for commands
+    return start(dataset, Order(asked, detector))
 
 
 def _left(run: ProposalRun) -> bool:
@@ -68,11 +72,20 @@ def _has_pictures(dataset: Dataset) -> bool:
 
 
 def do(
-    dataset: Dataset, order: Order, progress: Progress = no_progress, user: User | None = None
+    dataset: Dataset,
+    order: Order,
+    progress: Progress = no_progress,
+    user: User | None = None,
+    params: Params | None = None,
 ) -> tuple[ProposalRun, Proposed]:
-    """Look at every frame that is still to be looked at in this way. Raises ProposalError."""
-    looker = looking.looker(dataset, order.method, order.detector)
+    """Look at every frame that is still to be looked at in this way. Raises ProposalError.
+
+    `params` are for detectors written in Python.
+    """
+    looker = looking.looker(dataset, order.method, order.detector, params)
     told = {**looker.settings, "asked": order.method, "detector": order.detector}
+    if params:
+        told["params"] = dict(params)
     run = runs.find_or_make(dataset, looker.method, looker.model, told, user)
     if order.use:
         runs.use(run)
@@ -84,8 +97,11 @@ def run(mine: queue.Run) -> dict[str, Any]:
     dataset = mine.job.dataset
     if dataset is None:
         raise ProposingFailed("The dataset is no longer there.")
+    order = Order(**mine.job.parameters)
+    if order.detector not in detectors.choices():  # it was when this was asked for
+        raise ProposingFailed(f"The detector {order.detector} is no longer offered by this server.")
     try:
-        made, proposed = do(dataset, Order(**mine.job.parameters), steps(mine), mine.job.created_by)
+        made, proposed = do(dataset, order, steps(mine), mine.job.created_by)
     except ProposalError as error:
         raise ProposingFailed(str(error)) from error
     return {"run": made.pk, **asdict(proposed)}

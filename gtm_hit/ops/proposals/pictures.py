@@ -20,7 +20,8 @@ KEPT = 64  # decoded pictures of a group, at most
 class StoredPictures(Mapping[str, Picture]):
     """By camera; what is missing in the storage is missing here."""
 
-    def __init__(self, digests: Mapping[str, str]) -> None:
+    def __init__(self, digests: Mapping[str, str], number: int = 0) -> None:
+        self.number = number  # the frame's
         self.digests = {name: each for name, each in digests.items() if images.is_stored(each)}
 
     def __getitem__(self, camera: str) -> Picture:
@@ -50,9 +51,9 @@ def decoded(digest: str) -> Picture:
 
 def pictures_of(frames: Iterable[Frame]) -> dict[int, StoredPictures]:
     """By frame id, with one query."""
-    ids = [frame.pk for frame in frames]
+    numbers = {frame.pk: frame.number for frame in frames}
     digests: dict[int, dict[str, str]] = defaultdict(dict)
-    rows = Image.objects.filter(frame__in=ids).order_by("camera__index")
+    rows = Image.objects.filter(frame__in=list(numbers)).order_by("camera__index")
     for frame, camera, digest in rows.values_list("frame_id", "camera__name", "full_digest"):
         digests[frame][camera] = digest
-    return {pk: StoredPictures(digests[pk]) for pk in ids}
+    return {pk: StoredPictures(digests[pk], number) for pk, number in numbers.items()}

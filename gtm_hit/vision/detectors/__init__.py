@@ -5,9 +5,22 @@ from __future__ import annotations
 from pathlib import Path
 
 from gtm_hit.vision.detectors.errors import DetectorError
+from gtm_hit.vision.detectors.http_plug import at_address
 from gtm_hit.vision.detectors.nanodet import FILE_NAME, NanoDet
+from gtm_hit.vision.detectors.python_plug import Params, from_entry_point, from_file, from_module, installed
 
-__all__ = ["DetectorError", "NanoDet", "built_in", "built_in_path"]
+__all__ = [
+    "DetectorError",
+    "NanoDet",
+    "Params",
+    "at_address",
+    "built_in",
+    "built_in_path",
+    "from_entry_point",
+    "from_file",
+    "from_module",
+    "installed",
+]
 
 
 def built_in_path(data_dir: Path) -> Path:

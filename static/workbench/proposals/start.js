@@ -19,6 +19,7 @@ import { addKeys } from "../keys/keys.js";
 import { ProposalActions } from "./proposal_actions.js";
 import { ProposalPanel } from "./proposal_panel.js";
 import { Proposals } from "./proposals.js";
+import { Snapping, settleAfter } from "./snapping.js";
 
 const STORED = "gtm-workbench-proposalThreshold";
 
@@ -28,6 +29,7 @@ const KEYS = [
   ["acceptOne", "people", ["Shift+o"], () => gettext("accept the proposal under the pointer, or gone to")],
   ["refuseOne", "people", ["Shift+r"], () => gettext("refuse it: nobody is there")],
   ["nextProposal", "people", ["Shift+f"], () => gettext("go to the next proposal, the most doubtful first")],
+  ["snap", "person", ["Shift+d"], () => gettext("to where the views show somebody, half a metre at most")],
   ["doubtful", "people", ["Shift+a"], () => gettext("one by one, close up, through the doubtful proposals")],
 ];
 
@@ -46,9 +48,12 @@ export async function startProposals(session, page) {
     refused: () => guard.refused(),
     round: () => perform("round"),
   });
+  const snapping = new Snapping({ ...session, notices, guard });
   actions.use(acting.table());
+  actions.use(snapping.table());
   addKeys(KEYS);
   settings.set("keys", settings.get("keys")); // the keyboard learns them
+  settleAfter(page.intents, snapping, session.store);
   listen(page.intents, acting);
   doubtfulFirst(page.queue, session.store, answer);
   panel.append(new ProposalPanel({ proposals, perform, remember }).element);

@@ -34,7 +34,7 @@ class Broken(Everywhere):
 @pytest.fixture
 def everywhere(monkeypatch: pytest.MonkeyPatch) -> Everywhere:
     made = Everywhere()
-    monkeypatch.setattr(detectors, "find", lambda _name: made)
+    monkeypatch.setattr(detectors, "find", lambda *_asked: made)
     return made
 
 
@@ -72,7 +72,7 @@ def test_a_method_whose_detector_cannot_be_had_says_so(dataset: Dataset, detecto
 def test_a_broken_detector_fails_the_job_with_its_words(
     dataset: Dataset, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(detectors, "find", lambda _name: Broken())
+    monkeypatch.setattr(detectors, "find", lambda *_asked: Broken())
     with pytest.raises(ProposalError, match="nonsense"):
         job.do(dataset, Order())
     assert not PictureBoxes.objects.exists()

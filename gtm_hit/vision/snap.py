@@ -1,0 +1,172 @@
+"""Where somebody really stands whose place was marked roughly.
+
+Places around the mark are scored by the detector's boxes, as far as the others who are marked do not explain
+them. The scores' peak, to less than a step, is where the edges of the boxes, and the background where it is
+trusted, then say to the centimetre where. Nobody is moved for a small gain, far, or onto somebody else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gtm_hit.geometry.camera import Camera, Floats
+from gtm_hit.vision.boxes import Box, as_array
+from gtm_hit.vision.cover import Body, CoverSettings, Match, matches_of
+from gtm_hit.vision.placing import placed
+from gtm_hit.vision.sights import Sight
+from gtm_hit.vision.silhouettes import SilhouetteSettings
+
+USUAL = CoverSettings().heights[0][0]  # metres: of whoever has no height of their own
+
+
+class Refused(StrEnum):
+    NOTHING = "nothing"  # no view supports anybody there
+    SMALL = "small"  # it is about as good where it is
+    NEAR = "near"  # somebody else stands there
+
+
+@dataclass(frozen=True)
+class SnapSettings:
+    reach: float = 0.5  # metres: nobody is moved further
+    step: float = 0.05  # metres between places that are scored
+    sharp: float = 0.05  # of the scores: by how much better a place is e times as likely
+    least: float = 0.3  # a place must be worth this much
+    gain: float = 0.05  # and so much more than the one marked
+    apart: float = 0.35  # metres from everybody else
+    cover: CoverSettings = field(default_factory=CoverSettings)
+    silhouettes: SilhouetteSettings = field(default_factory=SilhouetteSettings)
+
+
+@dataclass(frozen=True, eq=False)
+class Marks:
+    """Who is marked in a frame: the one to be moved, and all others."""
+
+    one: Floats  # (3,) x, y, height: metres
+    others: Floats  # (N, 3)
+
+
+@dataclass(frozen=True)
+class Snapped:
+    x: float
+    y: float
+    gain: float
+    refused: Refused | None = None
+
+
+def snap(
+    marks: Marks,
+    boxes: Mapping[str, Sequence[Box]],
+    cameras: Mapping[str, Camera],
+    foregrounds: Mapping[str, NDArray] | None = None,
+    settings: SnapSettings | None = None,
+) -> Snapped:
+    """The better place, or the same one with the reason why it stays."""
+    s = settings or SnapSettings()
+    sights = {
+        name: Sight(cameras[name], as_array(list(found)), s.cover.sight) for name, found in boxes.items()
+    }
+    taken = matches_of(sights, marks.others)
+    places = _disc(marks.one, s)
+    free = _apart(places, marks.others) >= s.apart
+    scores = _Scores(sights, marks.others, taken)
+    worth = scores.of(places)
+    here = float(scores.of(marks.one[None])[0])
+    if not free.any() or worth.max(initial=-np.inf) < s.least:
+        return _stays(marks, 0.0, Refused.NEAR if not free.any() else Refused.NOTHING)
+    peak = _peak(places[free], worth[free], s)
+    found = _placed(marks, peak, taken, scores, foregrounds or {}, cameras, s)
+    gain = float(scores.of(found[None])[0]) - here
+    if _apart(found[None], marks.others)[0] < s.apart:
+        return _stays(marks, gain, Refused.NEAR)
+    if gain < s.gain:
+        return _stays(marks, gain, Refused.SMALL)
+    return Snapped(float(found[0]), float(found[1]), gain)
+
+
+def _stays(marks: Marks, gain: float, why: Refused) -> Snapped:
+    return Snapped(float(marks.one[0]), float(marks.one[1]), gain, why)
+
+
+def _disc(one: Floats, s: SnapSettings) -> Floats:
+    """Bodies (N, 3) at all places within reach."""
+    offsets = np.arange(-s.reach, s.reach + s.step / 2, s.step)
+    around = np.stack(np.meshgrid(offsets, offsets), axis=-1).reshape(-1, 2)
+    around = around[np.hypot(*around.T) <= s.reach]
+    return np.column_stack((one[:2] + around, np.full(len(around), one[2])))
+
+
+def _apart(bodies: Floats, others: Floats) -> Floats:
+    """Metres from each to the nearest of the others."""
+    away = bodies[:, None, :2] - others[None, :, :2]
+    nearest: Floats = np.hypot(away[..., 0], away[..., 1]).min(axis=1, initial=np.inf)
+    return nearest
+
+
+def _peak(places: Floats, worth: Floats, s: SnapSettings) -> Floats:
+    """The middle of what is about as good as the best, around it: other peaks do not pull."""
+    best = places[worth.argmax()]
+    weight = np.exp((worth - worth.max()) / s.sharp)
+    weight[np.hypot(*(places[:, :2] - best[:2]).T) > s.reach / 2] = 0.0
+    middle: Floats = (places * weight[:, None]).sum(axis=0) / weight.sum()
+    return middle
+
+
+class _Scores:
+    """What views say about bodies while others are there, whose boxes count by what they are worth more."""
+
+    def __init__(self, sights: Mapping[str, Sight], others: Floats, taken: Sequence[Match]) -> None:
+        self.sights, self._others = sights, others
+        self._explained = {name: _explained(name, sight, others, taken) for name, sight in sights.items()}
+
+    def of(self, bodies: Floats) -> Floats:
+        total = np.zeros(len(bodies))
+        for name, sight in self.sights.items():
+            expected = sight.expected(bodies)
+            best = (sight.worths(expected) - self._explained[name]).max(axis=1, initial=0.0)
+            hidden = sight.hidden(bodies, expected, self._others)
+            total += np.where(best > 0, best, np.where(hidden, 0.0, sight.missed(expected)))
+        return total
+
+    def box(self, name: str, body: Floats) -> int | None:
+        """The box of a body in a view."""
+        sight = self.sights[name]
+        rest = (sight.worths(sight.expected(body[None])) - self._explained[name])[0]
+        return int(rest.argmax()) if rest.max(initial=0.0) > 0 else None
+
+
+def _explained(name: str, sight: Sight, others: Floats, taken: Sequence[Match]) -> Floats:
+    """How much of each box is explained by the one of the others whose it is, (boxes,)."""
+    explained = np.zeros(len(sight.found))
+    worths = sight.worths(sight.expected(others))
+    for other, match in enumerate(taken):
+        if name in match:
+            explained[match[name]] = worths[other, match[name]]
+    return explained
+
+
+def _placed(
+    marks: Marks,
+    peak: Floats,
+    taken: Sequence[Match],
+    scores: _Scores,
+    foregrounds: Mapping[str, NDArray],
+    cameras: Mapping[str, Camera],
+    s: SnapSettings,
+) -> Floats:
+    """The body at the peak put where its boxes' edges and the background say, the others held to be known."""
+    mine = {name: box for name in scores.sights if (box := scores.box(name, peak)) is not None}
+    bodies = [Body(peak[:2], float(peak[2]), 0.0, mine, np.eye(2))]
+    bodies += [
+        Body(each[:2], float(each[2]), 0.0, match, np.eye(2))
+        for each, match in zip(marks.others, taken, strict=True)
+    ]
+    boxes = {name: [Box(*row) for row in sight.found.tolist()] for name, sight in scores.sights.items()}
+    found = placed(bodies, boxes, foregrounds, cameras, s.cover, s.silhouettes)[0].xy
+    away = found - marks.one[:2]
+    held = away * min(1.0, s.reach / max(float(np.hypot(*away)), 1e-9))
+    return np.array([*(marks.one[:2] + held), marks.one[2]])
