@@ -27,7 +27,7 @@ from tests.dataset_folder import make_folder, options
 
 pytestmark = pytest.mark.django_db
 
-TOMORROW = timezone.now() + timedelta(days=1, minutes=5)
+TOMORROW = timezone.now() + timedelta(days=2)  # of the collecting, however long the tests before take
 
 
 @pytest.fixture(autouse=True)
