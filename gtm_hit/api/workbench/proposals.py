@@ -62,17 +62,19 @@ class RefusalSerializer(serializers.Serializer[Any]):
     refused = StrictBooleanField(default=True, help_text="false: takes it back")
 
 
-class MarkSerializer(serializers.Serializer[Any]):
+class SnappedMarkSerializer(serializers.Serializer[Any]):
     position = serializers.IntegerField(min_value=0, max_value=LARGEST)
     height = serializers.FloatField(
         min_value=0.3, max_value=3, allow_null=True, default=None, help_text="metres; null: as tall as usual"
     )
 
 
-class SnapSerializer(MarkSerializer):
+class SnapSerializer(SnappedMarkSerializer):
     frame = serializers.IntegerField(min_value=0, max_value=LARGEST)
     others = serializers.ListField(
-        child=MarkSerializer(), max_length=MOST_OTHERS, help_text="everybody else who is marked in the frame"
+        child=SnappedMarkSerializer(),
+        max_length=MOST_OTHERS,
+        help_text="everybody else who is marked in the frame",
     )
 
 
