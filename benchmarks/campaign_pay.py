@@ -67,8 +67,13 @@ def measure() -> None:
     from django.db import connection
     from django.test import Client
 
+    from gtm_hit.ops.access import granting
+    from gtm_hit.ops.access.roles import Role
+
     client = Client()
-    client.force_login(User.objects.create_user("vera", is_staff=True))
+    vera = User.objects.create_user("vera")
+    granting.grant(vera, Role.MANAGER)
+    client.force_login(vera)
     asked: list[str] = []
 
     def noted(execute: Any, sql: str, *rest: Any) -> Any:
