@@ -123,7 +123,7 @@ def frame(scope: Scope) -> dict[str, Any]:
     """What both pages have in common."""
     return {
         "section": "datasets",
-        "tab": "stitching",
+        "tab": "campaigns" if scope.campaign else "stitching",
         "dataset": scope.dataset,
         "campaign": scope.campaign,
         "stitching_address": address("stitching", scope),

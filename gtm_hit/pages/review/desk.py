@@ -111,7 +111,7 @@ def appeal(request: StaffRequest, slug: str, pk: int, name: str | None = None) -
             problem = str(error)
     context: dict[str, Any] = {
         "section": "datasets",
-        "tab": "review",
+        "tab": "campaigns" if scope.campaign else "review",
         "dataset": scope.dataset,
         "campaign": scope.campaign,
         "assignment": assignment,

@@ -36,7 +36,7 @@ def waiting(request: HttpRequest, slug: str, name: str | None = None) -> HttpRes
     page = Paginator(LISTS[shown](scope), ROWS_PER_PAGE).get_page(request.GET.get("page"))
     context = {
         "section": "datasets",
-        "tab": "review",
+        "tab": "campaigns" if scope.campaign else "review",
         "dataset": scope.dataset,
         "campaign": scope.campaign,
         "counts": queue.counts(scope),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import pytest
@@ -10,6 +11,8 @@ from django.test import Client
 from django.urls import reverse
 
 from gtm_hit.models import Appeal, Assignment, Dataset, Layer
+from gtm_hit.ops.access import granting
+from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.review.transitions import transition
 from gtm_hit.ops.work import links
@@ -131,3 +134,16 @@ def test_an_appeal_is_decided_by_somebody_else_and_told(
 def test_the_corrected_copy_opens_with_the_desk_to_go_back_to(staff: Client, work: Assignment) -> None:
     assert staff.post(f"{QUEUE}{work.pk}/mend/")["Location"] == f"{QUEUE}{work.pk}/mended/"
     assert f'data-home="{QUEUE}{work.pk}/"' in staff.get(f"{QUEUE}{work.pk}/mended/").content.decode()
+
+
+def test_a_reviewer_sees_only_those_pages_of_a_campaign_that_open(client: Client) -> None:
+    dataset = make_work()
+    into_campaign(dataset)
+    rosa = User.objects.create_user("rosa")
+    granting.grant(rosa, Role.REVIEWER, dataset)
+    client.force_login(rosa)
+    page = client.get("/datasets/square/campaigns/spring/review/").content.decode()
+    campaign = "/datasets/square/campaigns/spring/"
+    shown = {link for link in re.findall(r'href="([^"?#]+)', page) if link.startswith(campaign)}
+    assert shown == {f"{campaign}review/", f"{campaign}stitching/"}
+    assert {client.get(link).status_code for link in shown} == {200}
