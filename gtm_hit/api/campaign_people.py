@@ -141,7 +141,7 @@ class CampaignWorkers(CampaignView):
 class OneCampaignWorker(CampaignView):
     @extend_schema(
         operation_id="decide_campaign_worker",
-        summary="Invite or block a worker, or end the links that lead to his work",
+        summary="Invite or block a worker, or end the links that lead to their work",
         description="`worker` is a pseudonym, or the platform's id; inviting takes ids nobody knew yet.",
         request=StandingSerializer,
         responses=answers(204, None, WRITES),

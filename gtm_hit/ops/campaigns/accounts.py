@@ -89,10 +89,10 @@ def refusal_of(error: ValidationError) -> CampaignError:
 
 @dataclass(frozen=True)
 class Place:
-    """A campaign as somebody of the own team sees it on his page."""
+    """A campaign as somebody of the own team sees it on their page."""
 
     campaign: Campaign
-    link: str  # to his seat there; empty until he has opened it for the first time
+    link: str  # to their seat there; empty until it was opened for the first time
     held: int
     submitted: int
 

@@ -54,7 +54,7 @@ def working_now(campaign: Campaign, most: int = 20) -> list[Assignment]:
 
 @dataclass(frozen=True)
 class Waiting:
-    """What waits for the manager, or happens without him."""
+    """What waits for the manager, or happens without them."""
 
     to_review: int
     returned: int

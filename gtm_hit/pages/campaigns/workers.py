@@ -1,4 +1,4 @@
-"""The workers of a campaign, and one of them as the manager sees him."""
+"""The workers of a campaign, and one of them as the manager sees them."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def worker(request: HttpRequest, slug: str, name: str, pseudonym: str) -> HttpRe
 @require_POST
 @needs(Role.MANAGER)
 def decide(request: StaffRequest, slug: str, name: str, pseudonym: str) -> HttpResponse:
-    """Invite, block, neither; or end the addresses that lead to his work."""
+    """Invite, block, neither; or end the addresses that lead to their work."""
     campaign, found = here(slug, name, pseudonym)
     deed = request.POST.get("deed", "")
     try:
@@ -85,16 +85,16 @@ def done(campaign: Campaign, worker: Worker, deed: str, request: StaffRequest) -
             return _("The worker is invited.")
         case "block":
             standing.block(campaign, worker, request.POST.get("reason", ""), request.user)
-            return _("The worker is blocked: he may finish what he holds and gets nothing more.")
+            return _("The worker is blocked: what is taken may be finished, nothing more is handed out.")
         case "forget":
             standing.forget(campaign, worker)
             return _("The rules for everybody count for this worker again.")
         case "revoke-links":
             seats.revoke(worker, request.user)
-            return _("None of the worker's links opens anything any more. Send him a new personal link.")
+            return _("None of the worker's links opens anything any more. Send out a new personal link.")
         case "revoke-link":
             revoke_one(campaign, worker, request.POST.get("assignment", ""))
-            return _("The batch's link was revoked; the worker finds a new one on his start page.")
+            return _("The batch's link was revoked; the worker's start page has a new one.")
     raise CampaignError(_("There is nothing of that name to do with a worker; nothing was changed."), "deed")
 
 

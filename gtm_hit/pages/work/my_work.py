@@ -1,4 +1,4 @@
-"""The page of somebody with an account: where he may work, and what he did."""
+"""The page of somebody with an account: where they may work, and what came of it."""
 
 from __future__ import annotations
 

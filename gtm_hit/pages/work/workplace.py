@@ -57,7 +57,7 @@ def valid_links_only(view: View) -> View:
 @never_cache
 @valid_links_only
 def join(request: HttpRequest, token: str) -> HttpResponse:
-    """Whoever is told by his browser or login is protected by it; a submission's id needs no cookie."""
+    """Whoever is told by a browser or login is protected by it; a submission's id needs no cookie."""
     entry = links.read_entry(token)
     if arrivals.needs_no_cookie(entry):
         return arrivals.arrive(request, entry)

@@ -13,6 +13,7 @@ from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.review.transitions import transition
 from gtm_hit.ops.scores import words
 from gtm_hit.ops.work import links
+from gtm_hit.scoring.worker import PARTS
 from tests.ops.review.scene import REASON, into_campaign, make_reviewer, make_work, submitted
 
 pytestmark = pytest.mark.django_db
@@ -93,6 +94,17 @@ def test_a_workers_words_give_away_neither_gold_nor_faults(work: Assignment) -> 
     said = words.for_worker(score(work)).lower()
     assert "what cost most" in said
     assert not [word for word in ("gold", "plant", "fault", "truth", "5", "20") if word in said]
+
+
+@pytest.mark.parametrize("part", [one.name for one in PARTS])
+def test_every_part_of_a_score_has_words_for_the_worker(part: str) -> None:
+    """And those of one part are no other's: what is planted hides behind nothing else."""
+    lost = [{"part": part, "good": 7.0, "bad": 9.0, "lost": 5.0}]
+    said = words.for_worker(WorkerScore(score=90.0, assignments=3, reasons=lost))
+    assert said.endswith(f"What cost most: {words.worker_words()[part]}.")
+    assert not [word for word in ("gold", "plant", "fault", "truth") if word in said.lower()]
+    assert len(set(words.worker_words().values())) == len(PARTS)
+    assert words.part_in_words(lost[0]) and part in words.part_names()
 
 
 def test_an_appeal_waits_for_the_manager(client: Client) -> None:
