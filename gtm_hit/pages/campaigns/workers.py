@@ -15,8 +15,9 @@ from django.views.decorators.http import require_http_methods, require_POST, req
 
 from gtm_hit.models import Campaign, Worker
 from gtm_hit.ops.access.roles import Role
-from gtm_hit.ops.campaigns import account, overview, seats, standing, tables
+from gtm_hit.ops.campaigns import overview, seats, standing, tables
 from gtm_hit.ops.campaigns.errors import CampaignError
+from gtm_hit.ops.campaigns.seen import seen
 from gtm_hit.ops.work import links
 from gtm_hit.ops.work.workers import MAX_ID
 from gtm_hit.pages.campaigns.common import campaign_or_404, csv_file, frame, worker_or_404
@@ -61,7 +62,7 @@ def worker(request: HttpRequest, slug: str, name: str, pseudonym: str) -> HttpRe
     decided = campaign.workers.filter(worker=found).select_related("changed_by").first()
     batches = overview.with_sums(page.object_list)
     context = frame(campaign, "campaign-workers", worker=found, row=row, decided=decided, page=page)
-    context |= {"batches": batches, "seen": account.seen(campaign, found)}
+    context |= {"batches": batches, "seen": seen(campaign, found)}
     return render(request, "campaigns/worker.html", context)
 
 
