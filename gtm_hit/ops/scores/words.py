@@ -122,12 +122,18 @@ def percent(part: float, whole: float) -> int:
 
 
 @dataclass(frozen=True)
-class Shown:
-    """A score as pages show it: whole points, and why."""
+class Interval:
+    """A score in whole points, and between which the true one lies nine times out of ten."""
 
     score: int
     low: int
     high: int
+
+
+@dataclass(frozen=True)
+class Shown(Interval):
+    """A score as pages show it, and why."""
+
     assignments: int
     lines: list[str]
 

@@ -169,7 +169,7 @@ def test_many_batches_and_campaigns_take_no_more_queries(
     for _ in range(3):
         client.post(home + "start/")
         finish(Assignment.objects.get(submitted_at=None))
-    with django_assert_max_num_queries(10):
+    with django_assert_max_num_queries(13):
         client.get("/my-work/")
 
 
