@@ -110,7 +110,7 @@ def remark(done: list[Any], frames: dict[int, list[int]], reviewer: Any) -> None
             resolved_at=timezone.now() if nth == 0 else None,
         )
         for one in done
-        if one.state in {"returned", "accepted"} and one.pk % 2 == 0
+        if one.state == "returned" or (one.state == "accepted" and one.pk % 2)
         for nth, text in enumerate(texts)
     )
 

@@ -29,6 +29,20 @@ class Together:
     def percent(self) -> int:
         return round(100 * self.agreement)
 
+    @property
+    def x_shown(self) -> str:
+        return signed(self.x)
+
+    @property
+    def y_shown(self) -> str:
+        return signed(self.y)
+
+
+def signed(centimetres: float) -> str:
+    """To a millimetre; what is nothing then has no sign."""
+    told = f"{centimetres:+.1f}"
+    return "0.0" if told in {"+0.0", "-0.0"} else told
+
 
 def of_worker(campaign: Campaign, worker: Worker) -> Together | None:
     """None where nobody else finished the same frames. Four queries, however many batches."""

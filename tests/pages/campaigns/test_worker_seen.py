@@ -62,7 +62,7 @@ def test_agreement_and_bias_are_told_where_others_did_the_same_frames(
     bob = submitted("bob", copies, aside=4, missing=1)  # four positions of 2.5 cm along X, one person less
     page = page_of(client, bob)
     assert "<dd>86 %</dd>" in page  # three of three and four found
-    assert "<dd>+10.0</dd>" in page and "<dd>+0.0</dd>" in page
+    assert "<dd>+10.0</dd>" in page and "<dd>0.0</dd>" in page
 
 
 def test_without_others_the_manager_reads_that_there_are_none(
