@@ -23,6 +23,7 @@ import django
 TIMES = 9
 LIMIT_MS = 150
 SIZE = 10
+COPIES = 2
 Timed = tuple[int, float, float]  # queries, milliseconds by the clock, of the processor
 
 
@@ -34,7 +35,8 @@ def prepare(folder: str) -> None:
 
 
 def build(slug: str, batches: int, workers: int) -> Any:
-    """Rows only: an open campaign of the own team; two thirds of its batches in every state there is."""
+    """Rows only: an open campaign of the own team in two copies; two thirds of its batches in every state
+    there is, with people, decisions, remarks, scores and money."""
     from gtm_hit.models import Camera, Dataset, Frame
     from gtm_hit.ops.campaigns import editing, states
 
@@ -49,9 +51,10 @@ def build(slug: str, batches: int, workers: int) -> Any:
         rvec=[1.9, 0, 0],
         matrix=[[1000, 0, 960], [0, 1000, 540], [0, 0, 1]],
     )
-    count = batches * (SIZE - 1) + 1
+    count = batches // COPIES * (SIZE - 1) + 1
     Frame.objects.bulk_create(Frame(dataset=dataset, number=5 * number) for number in range(count))
     values = {"name": "large", "platform": "own_team", "pay_per_batch": 2, "title": "A large one"}
+    values |= {"copies": COPIES, "hourly_floor": 10}
     campaign = states.take(editing.create(dataset, values), "open")
     assert campaign.batches.count() == batches
     fill(campaign, people(campaign, workers))
@@ -78,18 +81,19 @@ def people(campaign: Any, count: int) -> list[Any]:
 
 
 def fill(campaign: Any, workers: list[Any]) -> None:
-    """Assignments over a month, ten saved frames each."""
+    """Assignments over a month, ten saved frames each, and what came after them."""
     from django.utils import timezone
 
+    from benchmarks.campaign_history import history
     from gtm_hit.models import Assignment, Batch, Layer, LayerFrame
 
     now = timezone.now()
     campaign.opened_at = now - timedelta(days=30)
     campaign.save(update_fields=["opened_at"])
-    chosen = list(campaign.batches.order_by("number"))
+    chosen = list(campaign.batches.order_by("number", "copy"))
     chosen = chosen[: len(chosen) * 2 // 3]
     layers = Layer.objects.bulk_create(
-        Layer(dataset=campaign.dataset, name=f"batch-{batch.number}", kind=Layer.Kind.ASSIGNMENT)
+        Layer(dataset=campaign.dataset, name=f"batch-{batch.number}-{batch.copy}", kind=Layer.Kind.ASSIGNMENT)
         for batch in chosen
     )
     states = ["accepted"] * 5 + ["submitted"] * 3 + ["returned", "leased", "rejected", "expired"]
@@ -118,12 +122,13 @@ def fill(campaign: Any, workers: list[Any]) -> None:
         frames.setdefault(batch_id, []).append(frame)
     LayerFrame.objects.bulk_create(
         (
-            LayerFrame(layer=layer, frame_id=frame, revision=1, done=True, seconds=40)
+            LayerFrame(layer=layer, frame_id=frame, revision=1, done=True, seconds=40 + batch.pk % 60)
             for batch, layer in zip(chosen, layers, strict=True)
             for frame in frames[batch.pk]
         ),
         batch_size=2000,
     )
+    history(campaign, frames)
 
 
 def addresses(campaign: Any) -> Iterator[tuple[str, str]]:

@@ -107,6 +107,12 @@ class OneCampaignLink(CampaignView):
         return Response(LinkShape(rows.get(pk=pk), context={"request": request}).data)
 
 
+class IntervalShape(serializers.Serializer[Any]):
+    score = serializers.IntegerField()
+    low = serializers.IntegerField(help_text="the true one lies between low and high nine times out of ten")
+    high = serializers.IntegerField()
+
+
 class WorkerShape(serializers.Serializer[Any]):
     worker = serializers.CharField(source="worker.pseudonym", help_text="pseudonym")
     standing = serializers.CharField(help_text="invited, blocked, or empty")
@@ -116,6 +122,7 @@ class WorkerShape(serializers.Serializer[Any]):
     frames_done = serializers.IntegerField()
     active_minutes = serializers.FloatField(source="minutes")
     last_batch_at = serializers.DateTimeField(source="last_at", allow_null=True)
+    score = IntervalShape(allow_null=True, help_text="0 to 100; null: nothing measured yet")
 
 
 class StandingSerializer(serializers.Serializer[Any]):
@@ -141,7 +148,7 @@ class CampaignWorkers(CampaignView):
 class OneCampaignWorker(CampaignView):
     @extend_schema(
         operation_id="decide_campaign_worker",
-        summary="Invite or block a worker, or end the links that lead to his work",
+        summary="Invite or block a worker, or end the links that lead to their work",
         description="`worker` is a pseudonym, or the platform's id; inviting takes ids nobody knew yet.",
         request=StandingSerializer,
         responses=answers(204, None, WRITES),

@@ -49,7 +49,9 @@ class CourseSerializer(serializers.Serializer[Any]):
     frames_submitted = serializers.IntegerField()
     batches = serializers.DictField(child=serializers.IntegerField(), help_text="by state; free: for anybody")
     done_at = serializers.DateTimeField(allow_null=True, help_text="forecast at the pace of the last days")
-    cost_so_far = serializers.DecimalField(12, 2, help_text="submitted and not rejected")
+    cost_so_far = serializers.DecimalField(
+        12, 2, help_text="submitted and not rejected, with approved bonuses"
+    )
     cost_in_all = serializers.DecimalField(12, 2)
     currency = serializers.CharField()
 
@@ -176,7 +178,7 @@ class CampaignCourse(CampaignView):
             "frames_submitted": going.frames_done,
             "batches": dict(going.batches),
             "done_at": going.done_at,
-            "cost_so_far": overview.cost_so_far(campaign),
+            "cost_so_far": overview.money(campaign).so_far,
             "cost_in_all": estimate(campaign).cost,
             "currency": campaign.currency,
         }

@@ -162,7 +162,7 @@ class Decision(ReviewView):
     @extend_schema(
         operation_id="decide_review",
         summary="Accept, return, reject, or decide an appeal",
-        description="Nobody decides about his own work, and an appeal is decided by somebody else.",
+        description="Nobody decides about their own work, and an appeal is decided by somebody else.",
         request=ReviewDecisionSerializer,
         responses=answers(200, ANY, DECIDES),
     )

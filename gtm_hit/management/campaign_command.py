@@ -37,7 +37,7 @@ def campaign_named(slug: str, name: str) -> Campaign:
 
 
 def manager_named(username: str | None, campaign: Campaign) -> User | None:
-    """In whose name a manager's deed is written down; raises CommandError if he may not do it."""
+    """In whose name a manager's deed is written down; raises CommandError if they may not do it."""
     return acting_as(username, Role.MANAGER, campaign.dataset)
 
 

@@ -51,6 +51,7 @@ def pay(request: HttpRequest, slug: str, name: str) -> HttpResponse:
         "due": sum(1 for each in lines if each.balance.to_pay),
         "lines": [(line, ledger.can_be_taken_back(line)) for line in table.lines_of(campaign)[:LINES_SHOWN]],
         "platform_pays": campaign.platform in planning.PLATFORMS,
+        "paying": request.GET.get("pay", ""),
     }
     return render(request, "campaigns/pay.html", context)
 

@@ -101,6 +101,13 @@ def test_bonuses_are_approved_and_paid_by_hand(staff: Client, ada: Worker) -> No
     assert "taken back" in press(staff, f"pay/lines/{paid.pk}/take-back/", note="came back")
 
 
+def test_the_fields_for_one_worker_open_below_that_row(staff: Client, ada: Worker) -> None:
+    assert "Mark as paid" not in staff.get(f"{PLACE}pay/").content.decode()
+    page = staff.get(f"{PLACE}pay/?pay={ada.pseudonym}").content.decode()
+    assert page.count("Mark as paid") == 1 and "Bonus of your own" in page
+    assert "Mark as paid" not in staff.get(f"{PLACE}pay/?pay=nobody").content.decode()
+
+
 @pytest.mark.parametrize(
     ("button", "amount"), [("pay/paid/", "0"), ("pay/paid/", "x"), ("pay/bonuses/", "-1"), ("pay/paid/", "9")]
 )

@@ -1,4 +1,4 @@
-"""What a worker reads about his work and answers to it: comments, the decision, an appeal."""
+"""What a worker reads about their work and answers to it: comments, the decision, an appeal."""
 
 from __future__ import annotations
 

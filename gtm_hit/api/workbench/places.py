@@ -1,4 +1,4 @@
-"""Where a caller works: the layer and frames he reaches through what he owns, never by an id alone."""
+"""Where a caller works: the layer and frames they reach through what they own, never by an id alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Proposals of the frames that a caller works on, and what he refuses of them."""
+"""Proposals of the frames that a caller works on, and what they refuse of them."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ from django.core.management.base import BaseCommand, CommandError, CommandParser
 from gtm_hit.management.lookups import campaign_named
 from gtm_hit.management.rules import add_rules, given
 from gtm_hit.models import Campaign
-from gtm_hit.ops.campaigns import editing, states, tables
+from gtm_hit.ops.campaigns import editing, overview, states, tables
 from gtm_hit.ops.campaigns.course import course
 from gtm_hit.ops.campaigns.errors import CampaignError
 from gtm_hit.ops.campaigns.estimate import estimate
@@ -43,6 +43,7 @@ class Command(BaseCommand):
         counted = ", ".join(f"{state} {count}" for state, count in sorted(going.batches.items()))
         self.stdout.write(f"{campaign.name}: {campaign.get_state_display()}; batches: {counted}")
         self.stdout.write(f"frames submitted: {going.frames_done} of {going.frames}, every copy counted")
+        self.stdout.write(f"cost so far: {overview.money(campaign).so_far} {campaign.currency}")
         self.stdout.write(f"cost when all is done: {estimate(campaign).cost} {campaign.currency}")
         if going.done_at:
             self.stdout.write(f"at the pace of the last days done about {going.done_at:%Y-%m-%d %H:%M} UTC")

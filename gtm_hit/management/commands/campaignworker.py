@@ -13,7 +13,7 @@ from gtm_hit.ops.work import links
 
 class Command(BaseCommand):
     help = (
-        "Invite or block a worker of a campaign, or end his links; without a deed print his batches as CSV."
+        "Invite or block a worker of a campaign, or end their links; without a deed print the batches as CSV."
     )
 
     def add_arguments(self, parser: CommandParser) -> None:
@@ -21,10 +21,10 @@ class Command(BaseCommand):
         parser.add_argument("name", help="the campaign")
         parser.add_argument("worker", help="pseudonym, or the platform's id")
         deed = parser.add_mutually_exclusive_group()
-        deed.add_argument("--invite", action="store_true", help="let him in where only invited workers are")
-        deed.add_argument("--block", metavar="REASON", help="give him no more batches")
+        deed.add_argument("--invite", action="store_true", help="let them in where only invited workers are")
+        deed.add_argument("--block", metavar="REASON", help="hand out no more batches")
         deed.add_argument("--forget", action="store_true", help="neither invited nor blocked any more")
-        deed.add_argument("--revoke-links", action="store_true", help="end whatever leads to his work")
+        deed.add_argument("--revoke-links", action="store_true", help="end whatever leads to their work")
         deed.add_argument("--revoke-link", type=int, metavar="BATCH", help="end the link of one batch")
 
     def handle(self, *args: Any, slug: str, name: str, worker: str, **options: Any) -> None:
@@ -44,7 +44,7 @@ class Command(BaseCommand):
     def do(self, campaign: Campaign, worker: Worker, options: dict[str, Any]) -> None:
         if options["block"] is not None:
             standing.block(campaign, worker, options["block"])
-            self.stdout.write(f"{worker.pseudonym} is blocked; what he holds he may finish.")
+            self.stdout.write(f"{worker.pseudonym} is blocked; what is already taken may be finished.")
         elif options["forget"]:
             standing.forget(campaign, worker)
             self.stdout.write(f"The campaign's rules count for {worker.pseudonym} again.")

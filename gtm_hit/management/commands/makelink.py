@@ -14,7 +14,7 @@ class Command(BaseCommand):
 
     def add_arguments(self, parser: CommandParser) -> None:
         parser.add_argument("slug")
-        parser.add_argument("--worker", default="", help="the worker's id; the link then works for him only")
+        parser.add_argument("--worker", default="", help="the worker's id; the link then works for them only")
         parser.add_argument("--platform", default="link", help="where the workers come from (default: link)")
         switch = parser.add_mutually_exclusive_group()
         switch.add_argument("--close", action="store_true", help="let nobody new in by the general link")

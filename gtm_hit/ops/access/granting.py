@@ -48,7 +48,7 @@ def revoke(user: User, role: Role, dataset: Dataset | None = None, by: User | No
     """Take a role. False: did not have it. Raises RoleError when `by` may not, or would lock himself out."""
     _refuse_others(by, dataset)
     if by is not None and by.pk == user.pk and role == Role.ADMINISTRATOR:
-        raise RoleError(_("Nobody takes the administrator's role from himself: ask another administrator."))
+        raise RoleError(_("Nobody gives up their own administrator's role: ask another administrator."))
     with transaction.atomic():
         if not _remove(user, role, dataset):
             return False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from django.contrib.auth.models import User
 from django.contrib.auth.password_validation import validate_password
@@ -11,11 +12,13 @@ from django.db import IntegrityError, transaction
 from django.db.models import Count, Exists, OuterRef, Q, QuerySet, Sum
 from django.utils.translation import gettext as _
 
-from gtm_hit.models import Assignment, Campaign, CampaignLink, CampaignWorker, Worker
+from gtm_hit.models import Assignment, Campaign, CampaignLink, CampaignWorker, Comment, Worker
 from gtm_hit.ops.access.granting import grant
 from gtm_hit.ops.access.roles import Role, may
-from gtm_hit.ops.campaigns import standing
+from gtm_hit.ops.campaigns import account, standing
 from gtm_hit.ops.campaigns.errors import CampaignError
+from gtm_hit.ops.counting import correlated_count
+from gtm_hit.ops.pay.sums import Balance
 from gtm_hit.ops.work import links
 
 PLATFORM = Campaign.Platform.OWN_TEAM
@@ -89,12 +92,14 @@ def refusal_of(error: ValidationError) -> CampaignError:
 
 @dataclass(frozen=True)
 class Place:
-    """A campaign as somebody of the own team sees it on his page."""
+    """A campaign as somebody of the own team sees it on their page."""
 
     campaign: Campaign
-    link: str  # to his seat there; empty until he has opened it for the first time
+    link: str  # to their seat there; empty until it was opened for the first time
     held: int
     submitted: int
+    score: str  # in words; empty before there is enough
+    balance: Balance | None
 
 
 def places(user: User) -> list[Place]:
@@ -111,16 +116,16 @@ def places(user: User) -> list[Place]:
     counted = rows.filter(offered | worked).annotate(
         held=Count("batches__assignments", filter=held), done=Count("batches__assignments", filter=done)
     )
-    return [
-        Place(
-            row,
-            links.seat_token(links.Seat(worker, row.dataset, row)) if worker else "",
-            row.held,
-            row.done,
-        )
-        for row in counted.order_by("dataset__slug", "name")
-        if may(user, Role.ANNOTATOR, row.dataset)
+    chosen = [
+        row for row in counted.order_by("dataset__slug", "name") if may(user, Role.ANNOTATOR, row.dataset)
     ]
+    told = account.of_several(worker, chosen) if worker else {}
+    return [place(row, worker, *told.get(row.pk, ("", None))) for row in chosen]
+
+
+def place(row: Any, worker: Worker | None, score: str, balance: Balance | None) -> Place:
+    link = links.seat_token(links.Seat(worker, row.dataset, row)) if worker else ""
+    return Place(row, link, row.held, row.done, score, balance)
 
 
 def standings(worker: Worker | None, standing: str) -> QuerySet[CampaignWorker, int]:
@@ -129,11 +134,13 @@ def standings(worker: Worker | None, standing: str) -> QuerySet[CampaignWorker, 
 
 
 def batches(user: User) -> QuerySet[Assignment]:
-    """What the account ever took, the newest first, with `frames_done` and `seconds`."""
+    """What the account ever took, the newest first, with `frames_done`, `seconds` and `open_comments`."""
+    remarks = Comment.objects.filter(assignment=OuterRef("pk"), answers=None, resolved_at=None)
     done = Count("layer__layer_frames", filter=Q(layer__layer_frames__done=True))
     return (
         Assignment.objects.filter(worker__user=user)
         .select_related("batch__dataset", "batch__campaign", "worker")
         .annotate(frames_done=done, seconds=Sum("layer__layer_frames__seconds"))
+        .annotate(open_comments=correlated_count(remarks, "assignment", "pk"))
         .order_by("-leased_at")
     )

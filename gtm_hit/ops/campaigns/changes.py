@@ -45,7 +45,7 @@ CUT = Rule(gettext_lazy("fixed: batches are cut"), never)
 IDENTITY = Rule(gettext_lazy("fixed: workers are known by their platform's ids"), never)
 BOOKS = Rule(gettext_lazy("fixed: the books are kept in it"), never)
 COPIES = Rule(gettext_lazy("may grow; copies that are there stay"), rises)
-MONEY = Rule(gettext_lazy("may rise; nobody gets less than he was promised"), rises)
+MONEY = Rule(gettext_lazy("may rise; nobody gets less than was promised"), rises)
 FREE = Rule(gettext_lazy("may change; counts from the next batch on"), always)
 WORDS = Rule(gettext_lazy("may change"), always)
 

@@ -1,4 +1,4 @@
-"""How a campaign goes: frames by state, then and now, and when it will be done. Two queries."""
+"""How a campaign goes: frames by state, then and now, and when it will be done. Three queries."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from django.db.models import Count
+from django.db.models import Count, Max
 from django.utils import timezone
 
-from gtm_hit.models import Assignment, Campaign
+from gtm_hit.models import Assignment, Campaign, Transition
 
 State = Assignment.State
 POINTS = 120  # moments of the figure
@@ -20,7 +20,10 @@ LEAST_HOURS = 0.25  # of work before anything is forecast
 
 @dataclass(frozen=True)
 class Piece:
-    """One assignment, as far as the course is concerned; `end`: when it left its worker's hands."""
+    """One assignment, as far as the course is concerned; `end`: when it left its worker's hands.
+
+    `accepted`: when that was decided; the end where nobody wrote it down.
+    """
 
     batch: int
     worker: int
@@ -28,6 +31,7 @@ class Piece:
     begin: datetime
     end: datetime | None
     frames: int
+    accepted: datetime | None = None
 
 
 @dataclass(frozen=True)
@@ -35,8 +39,8 @@ class Moment:
     """Frames of all copies, at one time."""
 
     at: datetime
-    accepted: int  # submitted until then, and accepted by now
-    submitted: int  # submitted until then, and waiting or returned now
+    accepted: int  # accepted until then
+    submitted: int  # submitted until then and accepted later, or waiting or returned now
     in_work: int
 
 
@@ -69,16 +73,23 @@ def course(campaign: Campaign, now: datetime | None = None) -> Course:
 
 def pieces(campaign: Campaign, sizes: dict[int, int], now: datetime) -> list[Piece]:
     rows = Assignment.objects.filter(batch__campaign=campaign).order_by("leased_at")
-    found = []
-    for batch, worker, state, begin, expires, submitted in rows.values_list(
-        "batch", "worker", "state", "leased_at", "expires_at", "submitted_at"
+    decided, found = accepted_at(campaign), []
+    for pk, batch, worker, state, begin, expires, submitted in rows.values_list(
+        "pk", "batch", "worker", "state", "leased_at", "expires_at", "submitted_at"
     ):
         # A row may say `leased` for a moment longer than it is true.
         over = state == State.EXPIRED or (state == State.LEASED and expires <= now)
         end = submitted or (min(expires, now) if over else None)
         kept = State.EXPIRED.value if over else state
-        found.append(Piece(batch, worker, kept, begin, end, sizes.get(batch, 0)))
+        accepted = max(decided.get(pk, end), end) if end and kept == State.ACCEPTED else None
+        found.append(Piece(batch, worker, kept, begin, end, sizes.get(batch, 0), accepted))
     return found
+
+
+def accepted_at(campaign: Campaign) -> dict[int, datetime]:
+    """By assignment, as far as the step to it was written down."""
+    steps = Transition.objects.filter(assignment__batch__campaign=campaign, to_state=State.ACCEPTED)
+    return dict(steps.order_by().values_list("assignment").annotate(last=Max("at")))
 
 
 def moments_of(campaign: Campaign, found: Sequence[Piece], now: datetime) -> list[Moment]:
@@ -87,20 +98,22 @@ def moments_of(campaign: Campaign, found: Sequence[Piece], now: datetime) -> lis
     if not begins:
         return []
     first, last = min(begins), campaign.closed_at or now
+    last = max([last, *(piece.accepted for piece in found if piece.accepted)])  # reviews go on after closing
     changes: list[tuple[datetime, int, int, int]] = []
     for piece in found:
         changes.append((piece.begin, 0, 0, piece.frames))
         if piece.end:
             changes.append((piece.end, *ending(piece)))
+        if piece.accepted:
+            changes.append((piece.accepted, piece.frames, -piece.frames, 0))
     changes.sort()
     return sampled(changes, first, max(first, last))
 
 
 def ending(piece: Piece) -> tuple[int, int, int]:
     """What becomes of a piece's frames when they leave the worker's hands."""
-    accepted = piece.frames if piece.state == State.ACCEPTED else 0
-    waiting = piece.frames if piece.state in {State.SUBMITTED, State.RETURNED} else 0
-    return accepted, waiting, -piece.frames
+    stays = piece.state in {State.SUBMITTED, State.RETURNED, State.ACCEPTED}
+    return 0, piece.frames if stays else 0, -piece.frames
 
 
 def sampled(

@@ -34,7 +34,7 @@ class NotAdmitted(OperationError):
 
 
 def refusal(campaign: Campaign, worker: Worker) -> Refusal | None:
-    """Why the worker may not take another batch; None when he may."""
+    """Why the worker may not take another batch; None when they may."""
     return state_refusal(campaign) or standing_refusal(campaign, worker) or limit_refusal(campaign, worker)
 
 

@@ -22,9 +22,11 @@ from gtm_hit.models import (
     StitchConflict,
     Worker,
 )
+from gtm_hit.ops.pay import table
+from gtm_hit.ops.pay.sums import NOTHING
+from gtm_hit.ops.scores import listing, words
 
 State = Assignment.State
-PAID = [State.SUBMITTED, State.ACCEPTED, State.RETURNED]  # what costs something, as far as is known now
 
 
 def campaigns(dataset: Dataset) -> QuerySet[Campaign]:
@@ -54,7 +56,7 @@ def working_now(campaign: Campaign, most: int = 20) -> list[Assignment]:
 
 @dataclass(frozen=True)
 class Waiting:
-    """What waits for the manager, or happens without him."""
+    """What waits for the manager, or happens without them."""
 
     to_review: int
     returned: int
@@ -84,11 +86,21 @@ def waiting(campaign: Campaign) -> Waiting:
     )
 
 
-def cost_so_far(campaign: Campaign) -> Decimal:
-    """Batches submitted and not rejected, at the campaign's pay; the ledger says what was paid."""
-    return (
-        campaign.pay_per_batch * Assignment.objects.filter(batch__campaign=campaign, state__in=PAID).count()
-    )
+@dataclass(frozen=True)
+class Money:
+    """`so_far`: accepted batches as the ledger has them, those still undecided, and approved bonuses."""
+
+    so_far: Decimal
+    bonuses: int  # that are proposed and wait to be approved
+    bonus_total: Decimal
+
+
+def money(campaign: Campaign) -> Money:
+    lines = table.workers(campaign)
+    owed = sum((each.balance.owed for each in lines), NOTHING)
+    proposed = [each.proposed for each in lines if each.proposed]
+    undecided = sum(each.waiting for each in lines)
+    return Money(owed + undecided * campaign.pay_per_batch, len(proposed), sum(proposed, NOTHING))
 
 
 @dataclass(frozen=True)
@@ -99,6 +111,7 @@ class WorkerRow:
     frames_done: int
     seconds: int
     last_at: datetime | None
+    score: words.Interval | None
 
     @property
     def batches(self) -> int:
@@ -132,7 +145,7 @@ def workers(campaign: Campaign, search: str = "") -> QuerySet[Worker]:
 
 
 def worker_rows(campaign: Campaign, page: Iterable[Any]) -> list[WorkerRow]:
-    """Three queries, however many workers."""
+    """Four queries, however many workers."""
     found: Sequence[Any] = list(page)
     ids = [worker.pk for worker in found]
     mine = Assignment.objects.filter(batch__campaign=campaign, worker__in=ids)
@@ -146,6 +159,7 @@ def worker_rows(campaign: Campaign, page: Iterable[Any]) -> list[WorkerRow]:
             done_frames=Count("pk", Q(done=True)), total=Sum("seconds")
         )
     }
+    scores = listing.by_worker(campaign, ids)
     standing = dict(campaign.workers.filter(worker__in=ids).values_list("worker", "standing"))
     return [
         WorkerRow(
@@ -154,6 +168,7 @@ def worker_rows(campaign: Campaign, page: Iterable[Any]) -> list[WorkerRow]:
             counts.get(worker.pk, {}),
             *(sums.get(worker.pk, (0, 0))),
             worker.last_at,
+            scores.get(worker.pk),
         )
         for worker in found
     ]

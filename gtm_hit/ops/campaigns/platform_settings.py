@@ -25,7 +25,7 @@ class OwnTeam:
 
 @dataclass(frozen=True)
 class SurveyLink:
-    """`fixed_code`: the panel's own code, the same for everybody; empty: one of his own for each batch."""
+    """`fixed_code`: the panel's own code, the same for everybody; empty: another one for each batch."""
 
     worker_parameter: str = "worker_id"
     fixed_code: str = ""

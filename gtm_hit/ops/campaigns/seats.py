@@ -1,4 +1,4 @@
-"""Where a worker is known, and who may end what leads to his work there."""
+"""Where a worker is known, and who may end what leads to their work there."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ def named(campaign: Campaign, name: str) -> Worker | None:
 
 
 def revoke(worker: Worker, user: User) -> None:
-    """Ends everything that leads to his work, wherever that is: all of it must be the manager's.
+    """Ends everything that leads to their work, wherever that is: all of it must be the manager's.
 
-    One secret of the worker's is in all of his addresses, so that there is no ending some of them.
+    One secret of the worker's is in all of their addresses, so that there is no ending some of them.
     """
     mine = datasets_of(user, Role.MANAGER)
     if datasets(worker).exclude(pk__in=mine.values("pk")).exists():
         text = _(
             "This worker has work or links in datasets that you do not manage, and all links end together. "
-            "Revoke the links of his batches one by one, or ask somebody who manages all of them."
+            "Revoke the links of the batches one by one, or ask somebody who manages all of them."
         )
         raise CampaignError(text, "deed")
     links.revoke_worker(worker)

@@ -37,7 +37,7 @@ def known_or_new(campaign: Campaign, external_id: str) -> Worker:
 
 
 def block(campaign: Campaign, worker: Worker, reason: str, user: User | None = None) -> CampaignWorker:
-    """No more batches for him; what he holds he may finish. The reason is for managers."""
+    """No more batches; what is held may be finished. The reason is for managers."""
     reason = reason.strip()
     if not reason or len(reason) > MAX_REASON:
         text = _("Say why, in at most %(most)d characters.")

@@ -26,10 +26,14 @@ def workers_csv(campaign: Campaign) -> str:
             row.frames_done,
             row.minutes,
             moment(row.last_at),
+            *((row.score.score, row.score.low, row.score.high) if row.score else ("", "", "")),
         ]
         for row in overview.worker_rows(campaign, overview.workers(campaign))
     ]
-    return table([*head, "frames_done", "active_minutes", "last_batch_taken_utc"], rows)
+    return table(
+        [*head, "frames_done", "active_minutes", "last_batch_taken_utc", "score", "score_low", "score_high"],
+        rows,
+    )
 
 
 def assignments_csv(campaign: Campaign, worker: Worker | None = None) -> str:

@@ -1,4 +1,4 @@
-"""Who takes a step: staff, the worker himself, or the system. Nobody reviews his own work."""
+"""Who takes a step: staff, the worker whose work it is, or the system. Nobody reviews their own work."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def own_work(user: User, worker: Worker) -> bool:
 
 def require_worker(assignment: Assignment, by: Actor) -> None:
     if not isinstance(by, Worker) or by.pk != assignment.worker_id:
-        raise NotAllowed(_("Only the worker himself does this."))
+        raise NotAllowed(_("Only the worker who did the batch does this."))
 
 
 def require_reviewer(assignment: Assignment, by: Actor) -> None:

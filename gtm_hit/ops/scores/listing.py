@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from django.db.models import QuerySet
 
 from gtm_hit.models import Campaign, WorkerScore
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.scores import computing
+from gtm_hit.ops.scores.words import Interval
 
 MOST_AT_ONCE = 300  # assignments that are measured while somebody waits
 
@@ -19,6 +22,12 @@ def workers(campaign: Campaign) -> QuerySet[WorkerScore]:
     """Lowest first, with the worker at hand."""
     rows = WorkerScore.objects.filter(campaign=campaign).select_related("worker")
     return rows.order_by("score", "worker__pseudonym")
+
+
+def by_worker(campaign: Campaign, workers: Iterable[int]) -> dict[int, Interval]:
+    rows = WorkerScore.objects.filter(campaign=campaign, worker__in=list(workers))
+    values = rows.values_list("worker", "score", "low", "high")
+    return {worker: Interval(*(round(value) for value in three)) for worker, *three in values}
 
 
 def recompute_now(campaign: Campaign) -> int:

@@ -105,13 +105,12 @@ def for_worker(row: WorkerScore | None) -> str:
 
 
 def worker_words() -> dict[str, str]:
-    wrong = _("people who were left where they should not be")
     return {
         "found": _("people who were missed, or marked where nobody stands"),
         "placed": _("people marked beside where they stand"),
         "identity": _("people whose numbers changed on the way"),
-        "faults": wrong,
-        "care": wrong,
+        "faults": _("people who were left where they should not be"),
+        "care": _("batches done in a hurry, or with hardly a correction"),
         "agreement": _("people whom others saw differently"),
         "plausible": _("people too close together, or too fast"),
         "finishing": _("batches that were not finished"),
@@ -123,12 +122,18 @@ def percent(part: float, whole: float) -> int:
 
 
 @dataclass(frozen=True)
-class Shown:
-    """A score as pages show it: whole points, and why."""
+class Interval:
+    """A score in whole points, and between which the true one lies nine times out of ten."""
 
     score: int
     low: int
     high: int
+
+
+@dataclass(frozen=True)
+class Shown(Interval):
+    """A score as pages show it, and why."""
+
     assignments: int
     lines: list[str]
 

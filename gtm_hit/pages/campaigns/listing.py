@@ -41,7 +41,7 @@ def campaign(request: HttpRequest, slug: str, name: str) -> HttpResponse:
         course=going,
         figure=mark_safe(figure(going)) if going.moments else "",
         estimate=estimate(found),
-        so_far=overview.cost_so_far(found),
+        money=overview.money(found),
         working=overview.working_now(found),
         waiting=overview.waiting(found),
         steps=[(step, states.MEANS[step]) for step in states.steps(found)],

@@ -1,4 +1,4 @@
-"""The workers of a campaign, and one of them as the manager sees him."""
+"""The workers of a campaign, and one of them as the manager sees them."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from django.views.decorators.http import require_http_methods, require_POST, req
 
 from gtm_hit.models import Campaign, Worker
 from gtm_hit.ops.access.roles import Role
-from gtm_hit.ops.campaigns import account, overview, seats, standing, tables
+from gtm_hit.ops.campaigns import overview, seats, standing, tables
 from gtm_hit.ops.campaigns.errors import CampaignError
+from gtm_hit.ops.campaigns.seen import seen
 from gtm_hit.ops.work import links
 from gtm_hit.ops.work.workers import MAX_ID
 from gtm_hit.pages.campaigns.common import campaign_or_404, csv_file, frame, worker_or_404
@@ -61,14 +62,14 @@ def worker(request: HttpRequest, slug: str, name: str, pseudonym: str) -> HttpRe
     decided = campaign.workers.filter(worker=found).select_related("changed_by").first()
     batches = overview.with_sums(page.object_list)
     context = frame(campaign, "campaign-workers", worker=found, row=row, decided=decided, page=page)
-    context |= {"batches": batches, "seen": account.seen(campaign, found)}
+    context |= {"batches": batches, "seen": seen(campaign, found)}
     return render(request, "campaigns/worker.html", context)
 
 
 @require_POST
 @needs(Role.MANAGER)
 def decide(request: StaffRequest, slug: str, name: str, pseudonym: str) -> HttpResponse:
-    """Invite, block, neither; or end the addresses that lead to his work."""
+    """Invite, block, neither; or end the addresses that lead to their work."""
     campaign, found = here(slug, name, pseudonym)
     deed = request.POST.get("deed", "")
     try:
@@ -85,16 +86,16 @@ def done(campaign: Campaign, worker: Worker, deed: str, request: StaffRequest) -
             return _("The worker is invited.")
         case "block":
             standing.block(campaign, worker, request.POST.get("reason", ""), request.user)
-            return _("The worker is blocked: he may finish what he holds and gets nothing more.")
+            return _("The worker is blocked: what is taken may be finished, nothing more is handed out.")
         case "forget":
             standing.forget(campaign, worker)
             return _("The rules for everybody count for this worker again.")
         case "revoke-links":
             seats.revoke(worker, request.user)
-            return _("None of the worker's links opens anything any more. Send him a new personal link.")
+            return _("None of the worker's links opens anything any more. Send out a new personal link.")
         case "revoke-link":
             revoke_one(campaign, worker, request.POST.get("assignment", ""))
-            return _("The batch's link was revoked; the worker finds a new one on his start page.")
+            return _("The batch's link was revoked; the worker's start page has a new one.")
     raise CampaignError(_("There is nothing of that name to do with a worker; nothing was changed."), "deed")
 
 

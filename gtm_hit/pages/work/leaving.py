@@ -35,6 +35,6 @@ def finished(request: HttpRequest, seat: links.Seat, assignment: Assignment) -> 
 
 
 def refused(request: HttpRequest, seat: links.Seat, outcome: Outcome, text: str, token: str) -> HttpResponse:
-    """No batch for this worker: what the platform is told, and what he reads."""
+    """No batch for this worker: what the platform is told, and what they read."""
     context = {"dataset": seat.dataset, "campaign": seat.campaign, "text": text, "token": token}
     return render(request, "work/refused.html", {**context, **shown(exit_of(seat, outcome))})

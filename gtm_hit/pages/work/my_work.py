@@ -1,4 +1,4 @@
-"""The page of somebody with an account: where he may work, and what he did."""
+"""The page of somebody with an account: where they may work, and what came of it."""
 
 from __future__ import annotations
 
@@ -22,9 +22,7 @@ ROWS_PER_PAGE = 50
 @needs(Role.ANNOTATOR)
 def my_work(request: StaffRequest) -> HttpResponse:
     page = Paginator(accounts.batches(request.user), ROWS_PER_PAGE).get_page(request.GET.get("page"))
-    rows = [
-        (one, links.assignment_token(one) if one.state in one.EDITABLE else "") for one in page.object_list
-    ]
+    rows = [(one, links.assignment_token(one)) for one in page.object_list]
     context = {"section": "my-work", "places": accounts.places(request.user), "page": page, "rows": rows}
     return render(request, "work/my_work.html", context)
 

@@ -57,7 +57,7 @@ def valid_links_only(view: View) -> View:
 @never_cache
 @valid_links_only
 def join(request: HttpRequest, token: str) -> HttpResponse:
-    """Whoever is told by his browser or login is protected by it; a submission's id needs no cookie."""
+    """Whoever is told by a browser or login is protected by it; a submission's id needs no cookie."""
     entry = links.read_entry(token)
     if arrivals.needs_no_cookie(entry):
         return arrivals.arrive(request, entry)
@@ -166,10 +166,18 @@ def start_page(request: HttpRequest, seat: links.Seat, token: str) -> HttpRespon
         "tutorial": lesson.available(),
         "refusal": entry_rules.refusal(seat.campaign, seat.worker) if seat.campaign else None,
         **leaving.shown(end),
-        "account": account.of(seat.campaign, seat.worker) if seat.campaign and finished else None,
+        **what_came_of_it(seat),
         "qualifications": requirements.offered(seat.dataset).exists(),
     }
     return render(request, "work/home.html", context)
+
+
+def what_came_of_it(seat: links.Seat) -> dict[str, Any]:
+    """The worker's account, and the way to the first open comment."""
+    if seat.campaign is None:
+        return {}
+    found = account.of(seat.campaign, seat.worker)
+    return {"account": found, "commented": links.assignment_token(found.commented) if found.commented else ""}
 
 
 @require_POST

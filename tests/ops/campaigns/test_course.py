@@ -8,11 +8,12 @@ from decimal import Decimal
 import pytest
 from django.utils import timezone
 
-from gtm_hit.models import Assignment, Campaign
+from gtm_hit.models import Assignment, Campaign, Transition, Worker
 from gtm_hit.ops.campaigns import overview
 from gtm_hit.ops.campaigns.course import course
 from gtm_hit.ops.campaigns.estimate import estimate
 from gtm_hit.ops.datasets.demo import Demo, open_campaign
+from gtm_hit.ops.pay import table
 from gtm_hit.ops.work.assignments import claim
 from gtm_hit.ops.work.pools import Pool
 from tests.campaign_scene import make_campaign, make_draft
@@ -79,9 +80,47 @@ def test_a_draft_has_no_course_and_an_estimate(campaign: Campaign) -> None:
 def test_what_was_submitted_and_not_rejected_costs(campaign: Campaign) -> None:
     finish(take(campaign, "alice"))
     finish(take(campaign, "bob"))
-    assert overview.cost_so_far(campaign) == Decimal("5.00")
+    assert overview.money(campaign).so_far == Decimal("5.00")
     Assignment.objects.filter(worker__external_id="bob").update(state="rejected")
-    assert overview.cost_so_far(campaign) == Decimal("2.50")
+    assert overview.money(campaign).so_far == Decimal("2.50")
+
+
+def test_approved_bonuses_cost_and_proposed_ones_wait(campaign: Campaign) -> None:
+    """Two batches in an hour each, at 2.50; the floor is 4.00 an hour."""
+    Campaign.objects.update(hourly_floor=Decimal("4.00"))
+    campaign.refresh_from_db()
+    for name in ("alice", "bob"):
+        finish(take(campaign, name)).layer.layer_frames.update(seconds=360)
+    Assignment.objects.update(state="accepted")
+    assert overview.money(campaign) == overview.Money(Decimal("5.00"), 2, Decimal("3.00"))
+    table.approve_bonuses(campaign, None, [Worker.objects.get(external_id="bob").pseudonym])
+    assert overview.money(campaign) == overview.Money(Decimal("6.50"), 1, Decimal("1.50"))
+
+
+def test_frames_count_as_accepted_from_the_moment_of_that_decision(campaign: Campaign) -> None:
+    """Submitted after two hours of the day, accepted in its last one."""
+    work = finish(take(campaign, "alice"))
+    opened = campaign.opened_at
+    assert opened is not None
+    times = {"leased_at": opened, "submitted_at": opened + timedelta(hours=2)}
+    Assignment.objects.update(state="accepted", **times)
+    step = Transition(assignment=work, number=9, action="accept", from_state="submitted", to_state="accepted")
+    step.save()
+    Transition.objects.filter(pk=step.pk).update(at=opened + timedelta(hours=23))
+    going = course(campaign).moments
+    noon = min(going, key=lambda one: abs(one.at - opened - timedelta(hours=12)))
+    assert (noon.submitted, noon.accepted) == (10, 0)
+    assert (going[-1].submitted, going[-1].accepted) == (0, 10)
+
+
+def test_without_a_step_written_down_acceptance_counts_from_the_submission(campaign: Campaign) -> None:
+    finish(take(campaign, "alice"))
+    opened = campaign.opened_at
+    assert opened is not None
+    Assignment.objects.update(state="accepted", submitted_at=opened + timedelta(hours=2))
+    going = course(campaign).moments
+    noon = min(going, key=lambda one: abs(one.at - opened - timedelta(hours=12)))
+    assert noon.accepted == 10
 
 
 def test_the_demo_scenes_campaign_is_opened_once() -> None:

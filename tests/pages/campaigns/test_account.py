@@ -8,11 +8,12 @@ import pytest
 from django.contrib.auth.models import User
 from django.test import Client
 
-from gtm_hit.models import Assignment, Worker, WorkerScore
+from gtm_hit.models import Assignment, Campaign, Worker, WorkerScore
 from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.review.transitions import transition
 from gtm_hit.ops.scores import words
 from gtm_hit.ops.work import links
+from gtm_hit.scoring.worker import PARTS
 from tests.ops.review.scene import REASON, into_campaign, make_reviewer, make_work, submitted
 
 pytestmark = pytest.mark.django_db
@@ -93,6 +94,39 @@ def test_a_workers_words_give_away_neither_gold_nor_faults(work: Assignment) -> 
     said = words.for_worker(score(work)).lower()
     assert "what cost most" in said
     assert not [word for word in ("gold", "plant", "fault", "truth", "5", "20") if word in said]
+
+
+@pytest.mark.parametrize("part", [one.name for one in PARTS])
+def test_every_part_of_a_score_has_words_for_the_worker(part: str) -> None:
+    """And those of one part are no other's: what is planted hides behind nothing else."""
+    lost = [{"part": part, "good": 7.0, "bad": 9.0, "lost": 5.0}]
+    said = words.for_worker(WorkerScore(score=90.0, assignments=3, reasons=lost))
+    assert said.endswith(f"What cost most: {words.worker_words()[part]}.")
+    assert not [word for word in ("gold", "plant", "fault", "truth") if word in said.lower()]
+    assert len(set(words.worker_words().values())) == len(PARTS)
+    assert words.part_in_words(lost[0]) and part in words.part_names()
+
+
+def test_the_table_of_workers_shows_the_score_between_its_bounds(client: Client, work: Assignment) -> None:
+    """On the page, as CSV and by REST."""
+    client.force_login(User.objects.create_superuser("mona"))
+    base = "datasets/square/campaigns/spring/workers"
+    assert "<b>" not in client.get(f"/{base}/").content.decode().split("<tbody>")[1]
+    score(work)
+    shown = " ".join(client.get(f"/{base}/").content.decode().split())
+    assert '<b>72</b> <span class="muted small">60 to 80</span>' in shown
+    assert client.get(f"/{base}.csv").content.decode().strip().endswith(",72,60,80")
+    told = client.get(f"/api/v1/{base}/").json()["results"][0]["score"]
+    assert told == {"score": 72, "low": 60, "high": 80}
+
+
+def test_bonuses_wait_for_the_manager(client: Client, work: Assignment) -> None:
+    """Half an hour at 8.00 an hour, paid with 2.50."""
+    work.layer.layer_frames.update(seconds=900)
+    Campaign.objects.update(hourly_floor=Decimal("8.00"))
+    client.force_login(User.objects.create_superuser("mona"))
+    page = " ".join(client.get("/datasets/square/campaigns/spring/").content.decode().split())
+    assert "1 bonus to be approved, 1.50 USD" in page and "campaigns/spring/pay/" in page
 
 
 def test_an_appeal_waits_for_the_manager(client: Client) -> None:
