@@ -68,7 +68,7 @@ def newest(status: str, at: datetime, told: Told) -> tuple[str, datetime]:
 
 def follow(campaign: Campaign, told: Told) -> None:
     if told.status in LEFT:
-        giving_back.of_submission(campaign, told.submission)
+        giving_back.of_submission(campaign, told.submission, f"{told.status} at the platform")
     if kind := DECIDED.get(told.status):
         waiting = OutboxRow.objects.filter(
             campaign=campaign, submission=told.submission, kind=kind, state__in=rows.OPEN

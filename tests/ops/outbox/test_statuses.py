@@ -35,6 +35,8 @@ def test_work_given_up_at_the_platform_frees_its_batch(campaign: Campaign, ada: 
     work = assign(campaign, ada, State.LEASED, submission="s1")
     assert observe(campaign, told(status))
     assert state(work) == "expired"
+    step = work.transitions.get()
+    assert (step.from_state, step.action, step.reason) == ("leased", "give_up", f"{status} at the platform")
 
 
 @pytest.mark.parametrize("kept", [State.SUBMITTED, State.ACCEPTED, State.REJECTED])
