@@ -14,8 +14,8 @@ from gtm_hit.ops.outbox import accounts, rows
 from gtm_hit.ops.outbox.platform import Platform
 from gtm_hit.ops.work import giving_back
 
-FINAL = {"APPROVED", "REJECTED", "RETURNED", "SCREENED OUT", "PARTIALLY APPROVED"}
-LEFT = {"RETURNED", "TIMED-OUT"}
+FINAL = {"APPROVED", "REJECTED", Submission.RETURNED, "SCREENED OUT", "PARTIALLY APPROVED"}
+LEFT = {Submission.RETURNED, "TIMED-OUT"}
 DECIDED = {"APPROVED": OutboxRow.Kind.APPROVE, "REJECTED": OutboxRow.Kind.REJECT}
 STATUS_CHANGE = "submission.status.change"
 

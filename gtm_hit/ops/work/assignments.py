@@ -14,7 +14,7 @@ from django.db import IntegrityError, transaction
 from django.db.models import Count, Exists, OuterRef, Q, QuerySet, Sum
 from django.utils import timezone
 
-from gtm_hit.models import Assignment, Batch, Campaign, Frame, Layer, Save, Worker
+from gtm_hit.models import Assignment, Batch, Campaign, Frame, Layer, Save, Submission, Worker
 from gtm_hit.ops.campaigns import entry_rules
 from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.review.transitions import expire_all, transition
@@ -130,15 +130,25 @@ def claim_once(worker: Worker, pool: Pool, address: str, another: bool) -> Assig
 
 
 def require_admitted(worker: Worker, pool: Pool) -> None:
-    """Raises NotAdmitted, BusyElsewhere, or NoFreeBatch when the submission's one batch is done."""
+    """Raises NotAdmitted, BusyElsewhere, or NoFreeBatch when the submission is over."""
     if pool.campaign is None:
         elsewhere = running().filter(worker=worker, batch__campaign=None).exclude(batch__dataset=pool.dataset)
         if other := elsewhere.select_related("batch__dataset").first():
             raise BusyElsewhere(other)
     elif refusal := entry_rules.refusal(pool.campaign, worker):
         raise entry_rules.NotAdmitted(refusal)
-    if pool.submission and pool.mine(worker).filter(submitted_at__isnull=False).exists():
-        raise NoFreeBatch(f"{pool.dataset}: submission {pool.submission} had its batch")
+    if is_over(worker, pool):
+        raise NoFreeBatch(f"{pool.dataset}: submission {pool.submission} had its batch or was given back")
+
+
+def is_over(worker: Worker, pool: Pool) -> bool:
+    """Whether nothing can be handed in under the seat's submission any more, so that nobody works unpaid."""
+    if not pool.submission:
+        return False
+    returned = Submission.objects.filter(
+        campaign=pool.campaign, submission=pool.submission, status=Submission.RETURNED
+    )
+    return pool.mine(worker).filter(submitted_at__isnull=False).exists() or returned.exists()
 
 
 def holding(batch: OuterRef) -> Exists:
@@ -166,7 +176,7 @@ def own_expired(worker: Worker, place: Place) -> QuerySet[Assignment]:
 def work_left(worker: Worker, place: Place) -> bool:
     """Whether `claim` would find something; nothing is taken."""
     pool = pool_of(place)
-    if pool.campaign and entry_rules.refusal(pool.campaign, worker):
+    if is_over(worker, pool) or (pool.campaign and entry_rules.refusal(pool.campaign, worker)):
         return False
     return own_expired(worker, pool).exists() or free_batches(worker, pool).exists()
 
