@@ -76,6 +76,11 @@ def test_pay_refuses_what_it_does_not_know(ada: Worker, arguments: list[str]) ->
     assert not MoneyEntry.objects.exists()
 
 
+def test_a_worker_of_another_campaign_is_nobody_in_this_one(ada: Worker) -> None:
+    with pytest.raises(CommandError, match="in this campaign"):
+        run("pay", "--paid", make_worker("bob", "link").pseudonym)
+
+
 def test_an_unknown_campaign_is_told_with_those_there_are(ada: Worker) -> None:
     with pytest.raises(CommandError, match="autumn"):
         call_command("pay", "square", "winter")
