@@ -97,6 +97,13 @@ def test_outbox_tells_dry_plans_and_sends(ada: Worker, prolific: Prolific) -> No
     assert prolific.paid("s1") == 2
 
 
+def test_outbox_asks_for_a_submission_back(ada: Worker) -> None:
+    assign(Campaign.objects.get(), ada, Assignment.State.SUBMITTED, submission="s2")
+    with pytest.raises(CommandError, match="Say why"):
+        run("outbox", "--ask-back", "s2")
+    assert "request_return" in run("outbox", "--ask-back", "s2", "--reason", "Only one view was looked at")
+
+
 def test_outbox_goes_by_files(ada: Worker, tmp_path: Path) -> None:
     run("outbox", "--plan-payouts")
     assert run("outbox", "--file", "approvals") == "s1\n"
