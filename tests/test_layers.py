@@ -75,3 +75,11 @@ def test_pure_layers_know_no_framework(file: Path) -> None:
 )
 def test_operations_know_no_request(file: Path) -> None:
     assert not [name for name in imports_of(file) if name.startswith(("django.http", "rest_framework"))]
+
+
+@pytest.mark.parametrize("file", [file for file in FILES if "ops" in file.parts], ids=lambda file: file.name)
+def test_operations_import_each_other_at_the_top(file: Path) -> None:
+    """An import within a function hides that two rooms know each other; what is slow to load may wait."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    within = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node not in tree.body]
+    assert not [node.module for node in within if (node.module or "").startswith("gtm_hit.ops")]

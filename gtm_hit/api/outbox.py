@@ -20,7 +20,7 @@ from gtm_hit.api.common.staff import ASKS, Pages, StaffView, answers, asked, cal
 from gtm_hit.api.jobs import Download, JobShape, started
 from gtm_hit.models import ApiToken, Campaign, OutboxRow
 from gtm_hit.ops.access.roles import Role
-from gtm_hit.ops.outbox import accounts, handover, overview, planning, rows, sending
+from gtm_hit.ops.outbox import accounts, handover, overview, planning, return_requests, rows, sending
 
 LARGEST_ROW = 2**63 - 1
 
@@ -57,6 +57,11 @@ class PayoutsSerializer(serializers.Serializer[Any]):
     workers = serializers.ListField(
         child=serializers.CharField(max_length=20), max_length=1000, allow_null=True, default=None
     )
+
+
+class ReturnRequestSerializer(serializers.Serializer[Any]):
+    submission = serializers.CharField(max_length=120, help_text="the platform's id")
+    reason = serializers.CharField(max_length=1000, help_text="what the worker reads")
 
 
 class OutboxDecisionSerializer(serializers.Serializer[Any]):
@@ -125,6 +130,21 @@ class Payouts(OutboxView):
             else:
                 found = planning.plan_payouts(campaign, caller(request), wanted["workers"])
         return Response(PlannedShape(found, many=True).data)
+
+
+class ReturnRequests(OutboxView):
+    @extend_schema(
+        operation_id="request_return",
+        summary="Plan to ask a worker to give a submission back, unpaid and without a rejection",
+        request=ReturnRequestSerializer,
+        responses=answers(200, RowShape, ACTS),
+    )
+    def post(self, request: Request, slug: str, name: str) -> Response:
+        campaign = campaign_or_404(slug, name)
+        wanted = valid(ReturnRequestSerializer(data=request.data))
+        with refusals():
+            row = return_requests.plan(campaign, wanted["submission"], wanted["reason"], caller(request))
+        return Response(RowShape(row).data)
 
 
 class Send(OutboxView):

@@ -17,7 +17,7 @@ from gtm_hit.api.common.campaigns import ACTS, campaign_or_404, refusals
 from gtm_hit.api.common.refusals import valid
 from gtm_hit.api.common.staff import READS, Pages, StaffView, answers, caller, invalid
 from gtm_hit.api.jobs import Download
-from gtm_hit.models import ApiToken, Campaign, MoneyEntry, Worker
+from gtm_hit.models import ApiToken, Campaign, MoneyEntry
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.pay import csv_files, ledger, table
 
@@ -140,9 +140,10 @@ class Payments(PayView):
     def post(self, request: Request, slug: str, name: str) -> Response:
         campaign = campaign_or_404(slug, name)
         wanted = valid(PaymentSerializer(data=request.data))
-        worker = Worker.objects.filter(pseudonym=wanted["worker"]).first()
-        if worker is None:
-            raise invalid("worker", "There is no such worker.")
+        try:
+            worker = table.worker_named(campaign, wanted["worker"])
+        except ledger.PayError as error:
+            raise invalid("worker", error) from error
         with refusals():
             entry = ledger.mark_paid(campaign, worker, caller(request), wanted["amount"], wanted["note"])
         return Response(EntryShape(entry).data)

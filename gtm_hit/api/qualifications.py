@@ -25,7 +25,7 @@ from gtm_hit.api.common.staff import (
     invalid,
     layer_named,
 )
-from gtm_hit.models import ApiToken, Qualification, QualificationAttempt, QualificationGrant, Worker
+from gtm_hit.models import ApiToken, Qualification, QualificationAttempt, QualificationGrant
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.qualifications import grants, managing
 from gtm_hit.ops.qualifications.managing import Order, PassMarks, QualificationError
@@ -150,9 +150,10 @@ class Grants(StaffView, ListAPIView[QualificationGrant]):
     def post(self, request: Request, slug: str, name: str) -> Response:
         qualification = one_or_404(slug, name)
         wanted = valid(GrantSerializer(data=request.data))
-        worker = Worker.objects.filter(pseudonym=wanted["worker"]).first()
-        if worker is None:
-            raise invalid("worker", f"There is no worker {wanted['worker']}.")
+        try:
+            worker = grants.worker_named(wanted["worker"])
+        except QualificationError as error:
+            raise invalid("worker", error) from error
         decide = grants.grant if wanted["granted"] else grants.revoke
         try:
             made = decide(qualification, worker, caller(request), wanted["why"])

@@ -106,6 +106,7 @@ campaign_pay: list[URLPattern | URLResolver] = [
     path("pay/<slug:what>.csv", pay.PayTable.as_view()),
     path("outbox/", outbox.Outbox.as_view()),
     path("outbox/payouts/", outbox.Payouts.as_view()),
+    path("outbox/return-requests/", outbox.ReturnRequests.as_view()),
     path("outbox/send/", outbox.Send.as_view()),
     path("outbox/<int:pk>/", outbox.OneRow.as_view()),
     path("outbox/files/<slug:what>.csv", outbox.HandoverFile.as_view()),

@@ -1,46 +1,25 @@
-"""How crowd platforms open an entry link: where they put their worker's id, and how a preview looks."""
+"""A dataset's own link, without a campaign: any platform may send its workers there, each in its own way."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from gtm_hit.crowd import external_question, survey_link
+from gtm_hit.ops.campaigns import platform_settings
 
-@dataclass(frozen=True)
-class Preview:
-    """A parameter and the value it has while somebody only looks at the task."""
-
-    parameter: str
-    value: str
-
-
-@dataclass(frozen=True)
-class Platform:
-    name: str
-    worker_parameters: tuple[str, ...]
-    preview: Preview | None = None
-
-    def shows_preview(self, address: Mapping[str, str]) -> bool:
-        return self.preview is not None and address.get(self.preview.parameter) == self.preview.value
-
-
-PLATFORMS = (
-    Platform("link", ("worker_id",)),
-    Platform(
-        "Mechanical Turk and panels that speak its protocol",
-        ("workerId",),
-        Preview("assignmentId", "ASSIGNMENT_ID_NOT_AVAILABLE"),
-    ),
-    Platform("Prolific", ("PROLIFIC_PID",)),
-    Platform("panels that name a participant", ("participant_id",)),
+WORKER_PARAMETERS = (
+    survey_link.TYPED,
+    external_question.WORKER,
+    platform_settings.Prolific.worker_parameter,
+    "participant_id",  # of panels that name a participant
 )
 
 
 def worker_id(given: Mapping[str, str]) -> str:
-    """Of the first platform whose parameter is filled in; empty when there is none."""
-    names = (name for platform in PLATFORMS for name in platform.worker_parameters)
-    return next((given[name] for name in names if given.get(name)), "")
+    """By the first parameter that is filled in; empty when none is."""
+    return next((given[name] for name in WORKER_PARAMETERS if given.get(name)), "")
 
 
 def is_preview(address: Mapping[str, str]) -> bool:
-    return any(platform.shows_preview(address) for platform in PLATFORMS)
+    """Somebody only looks at the task."""
+    return address.get(external_question.SUBMISSION) == external_question.PREVIEW

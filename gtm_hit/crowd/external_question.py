@@ -13,7 +13,8 @@ from gtm_hit.crowd.platform import Arrival, ArrivalError, Exit, FormPost, Framin
 from gtm_hit.ops.campaigns.platform_settings import ExternalQuestion as Settings
 from gtm_hit.ops.campaigns.platform_settings import origin_of, secure
 
-PREVIEW = "ASSIGNMENT_ID_NOT_AVAILABLE"
+WORKER, SUBMISSION = "workerId", "assignmentId"  # parameters of the address
+PREVIEW = "ASSIGNMENT_ID_NOT_AVAILABLE"  # the submission of somebody who only looks
 SUBMIT = "/mturk/externalSubmit"
 MAX_ADDRESS = 200
 MAX_ID = 120
@@ -28,10 +29,10 @@ class ExternalQuestion:
     by_login = False
 
     def arrival(self, given: Mapping[str, str]) -> Arrival:
-        submission, submit_to = given.get("assignmentId", ""), given.get("turkSubmitTo", "")
+        submission, submit_to = given.get(SUBMISSION, ""), given.get("turkSubmitTo", "")
         if submission == PREVIEW:
             return Arrival(preview=True)
-        worker = given.get("workerId", "")
+        worker = given.get(WORKER, "")
         if not worker or not submission or len(submission) > MAX_ID:
             raise ArrivalError(_("Open this page from the task on your panel; it tells us who you are."))
         if not self.takes_forms(submit_to):
@@ -50,7 +51,7 @@ class ExternalQuestion:
         # Who did nothing hands nothing in: he returns the task on his panel's page.
         if outcome is not Outcome.COMPLETED or not self.takes_forms(arrival.submit_to):
             return Stay()
-        fields = {"assignmentId": arrival.submission, "code": code}
+        fields = {SUBMISSION: arrival.submission, "code": code}
         return FormPost(arrival.submit_to.rstrip("/") + SUBMIT, fields)
 
     def entry_address(self, link: str) -> str:

@@ -10,6 +10,7 @@ from django.utils.translation import gettext as _
 
 from gtm_hit.crowd.platform import Arrival, ArrivalError, Exit, Framing, Outcome, Redirect, Stay
 from gtm_hit.ops.campaigns.platform_settings import Prolific as Settings
+from gtm_hit.ops.outbox.studies import with_placeholders
 
 MAX_ID = 120
 
@@ -45,12 +46,7 @@ class Prolific:
         return Redirect(address + joined + urlencode({"cc": codes[outcome]}))
 
     def entry_address(self, link: str) -> str:
-        names = {
-            self.settings.worker_parameter: "{{%PROLIFIC_PID%}}",
-            self.settings.study_parameter: "{{%STUDY_ID%}}",
-            self.settings.submission_parameter: "{{%SESSION_ID%}}",
-        }
-        return f"{link}?" + "&".join(f"{name}={placeholder}" for name, placeholder in names.items())
+        return with_placeholders(self.settings, link)
 
     def framing(self) -> Framing | None:
         return None

@@ -1,4 +1,4 @@
-"""Datasets and layers as the command line names them."""
+"""Datasets and what belongs to them as the command line names them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from django.core.management.base import CommandError
 
-from gtm_hit.models import Campaign, Dataset, Layer
+from gtm_hit.models import Campaign, Dataset, Layer, Qualification
 
 
 def dataset_named(slug: str) -> Dataset:
@@ -34,6 +34,16 @@ def campaign_named(slug: str, name: str) -> Campaign:
     if found is None:
         names = dataset.campaigns.values_list("name", flat=True)
         raise CommandError(f"no campaign {name} of dataset {slug}{_there(names)}")
+    return found
+
+
+def qualification_named(slug: str, name: str) -> Qualification:
+    """Raises CommandError that tells which datasets or qualifications there are."""
+    dataset = dataset_named(slug)
+    found = Qualification.objects.select_related("truth").filter(dataset=dataset, name=name).first()
+    if found is None:
+        names = dataset.qualifications.values_list("name", flat=True)
+        raise CommandError(f"no qualification {name} of dataset {slug}{_there(names)}")
     return found
 
 

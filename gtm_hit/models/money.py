@@ -21,8 +21,6 @@ class MoneyEntry(models.Model):
         BONUS_APPROVED = "bonus_approved", "bonus approved"
         PAID = "paid", "paid"
 
-    OWED = [Kind.EARNED, Kind.BONUS_APPROVED]
-
     campaign = models.ForeignKey(Campaign, on_delete=models.PROTECT, related_name="money")
     worker = models.ForeignKey("gtm_hit.Worker", on_delete=models.PROTECT, related_name="money")
     assignment = models.ForeignKey(

@@ -29,7 +29,9 @@ class PlatformAccount(models.Model):
 
 
 class Submission(models.Model):
-    """One piece of work as the platform sees it: its newest status."""
+    """One piece of work as the platform sees it: its newest status, in the platform's words."""
+
+    RETURNED = "RETURNED"  # its worker gave it back: nothing is paid for it
 
     campaign = models.ForeignKey(Campaign, on_delete=models.CASCADE, related_name="submissions")
     submission = models.CharField(max_length=120, help_text="the platform's id")

@@ -14,7 +14,7 @@ from django.utils.translation import gettext as _
 from django.utils.translation import gettext_lazy, ngettext
 from django.views.decorators.http import require_http_methods, require_POST, require_safe
 
-from gtm_hit.models import Campaign, MoneyEntry, Worker
+from gtm_hit.models import Campaign, MoneyEntry
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.outbox import planning
@@ -88,10 +88,8 @@ def paid(request: StaffRequest, slug: str, name: str) -> HttpResponse:
     campaign, form = campaign_or_404(slug, name), AmountForm(request.POST)
     if not form.is_valid():
         return back_with(request, campaign, told(form))
-    worker = Worker.objects.filter(pseudonym=form.cleaned_data["worker"]).first()
-    if worker is None:
-        return back_with(request, campaign, _("There is no such worker."))
     try:
+        worker = table.worker_named(campaign, form.cleaned_data["worker"])
         entry = ledger.mark_paid(
             campaign, worker, request.user, form.cleaned_data["amount"], form.cleaned_data["note"]
         )

@@ -20,7 +20,17 @@ from gtm_hit.crowd.prolific import connect
 from gtm_hit.models import Campaign, OutboxRow
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.errors import OperationError
-from gtm_hit.ops.outbox import accounts, handover, overview, planning, rows, sending, statuses, studies
+from gtm_hit.ops.outbox import (
+    accounts,
+    handover,
+    overview,
+    planning,
+    return_requests,
+    rows,
+    sending,
+    statuses,
+    studies,
+)
 from gtm_hit.ops.outbox.platform import StudyDraft
 from gtm_hit.pages.common.access import StaffRequest, needs
 from gtm_hit.pages.common.campaign_choice import campaign_or_404
@@ -230,6 +240,13 @@ def file_done(request: StaffRequest, campaign: Campaign) -> str:
 
 
 @press
+def return_request(request: StaffRequest, campaign: Campaign) -> str:
+    submission, reason = request.POST.get("submission", ""), request.POST.get("reason", "")
+    row = return_requests.plan(campaign, submission, reason, request.user)
+    return _("Planned: %(worker)s is asked to give the submission back.") % {"worker": row.worker.pseudonym}
+
+
+@press
 def submissions(request: StaffRequest, campaign: Campaign) -> str:
     sent = request.FILES.get("file")
     if sent is None or isinstance(sent, list):
@@ -251,6 +268,7 @@ urlpatterns = [
     path(f"{PLACE}draft/", draft, name="campaign-draft"),
     path(f"{PLACE}study/", study, name="campaign-study"),
     path(f"{PLACE}messages/", messages_here, name="campaign-messages"),
+    path(f"{PLACE}return-requests/", return_request, name="campaign-return-request"),
     path(f"{PLACE}send/", send, name="campaign-send"),
     path(f"{PLACE}rows/<int:pk>/", row, name="campaign-outbox-row"),
     path(f"{PLACE}files/done/", file_done, name="campaign-file-done"),

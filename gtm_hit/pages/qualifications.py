@@ -14,7 +14,7 @@ from django.utils.translation import gettext as _
 from django.utils.translation import gettext_lazy
 from django.views.decorators.http import require_http_methods, require_POST
 
-from gtm_hit.models import Dataset, Qualification, Worker
+from gtm_hit.models import Dataset, Qualification
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.gold.truths import truths
@@ -164,22 +164,14 @@ def decided(request: StaffRequest, qualification: Qualification) -> str:
             managing.reopen(qualification)
             return _("Open: workers can try again.")
         case "grant":
-            worker = worker_named(request)
+            worker = grants.worker_named(request.POST.get("worker", "").strip())
             grants.grant(qualification, worker, request.user, request.POST.get("why", "").strip())
             return _("%(worker)s has the qualification.") % {"worker": worker.pseudonym}
         case "revoke":
-            worker = worker_named(request)
+            worker = grants.worker_named(request.POST.get("worker", "").strip())
             grants.revoke(qualification, worker, request.user, request.POST.get("why", ""))
             return _("%(worker)s does not have the qualification any more.") % {"worker": worker.pseudonym}
     raise QualificationError(_("Choose what to do."))
-
-
-def worker_named(request: HttpRequest) -> Worker:
-    name = request.POST.get("worker", "").strip()
-    found = Worker.objects.filter(pseudonym=name).first()
-    if found is None:
-        raise QualificationError(_("There is no worker %(name)s.") % {"name": name})
-    return found
 
 
 urlpatterns = [

@@ -12,8 +12,6 @@ from scipy.sparse.csgraph import connected_components
 
 from gtm_hit.stitching.tracks import Floats, Ids
 
-NEVER = 1e6  # costs more than everything that is possible
-
 
 @dataclass(frozen=True)
 class Pair:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -71,17 +70,3 @@ def as_json(proposal: Proposal) -> dict[str, Any]:
             for each in proposal.evidence
         ],
     }
-
-
-def from_json(row: Mapping[str, Any]) -> Proposal:
-    """Inverse of `as_json`."""
-    evidence = tuple(
-        Evidence(
-            each["camera"],
-            None if each["box"] is None else tuple(each["box"]),
-            float("nan") if each["seen"] is None else each["seen"],
-            each["hidden"],
-        )
-        for each in row["evidence"]
-    )
-    return Proposal(**{**row, "evidence": evidence})

@@ -123,6 +123,15 @@ def test_what_is_no_amount_is_refused(staff: Caller, ada: Worker, amount: Any) -
     assert not MoneyEntry.objects.exists()
 
 
+def test_a_submission_is_asked_back(staff: Caller, ada: Worker) -> None:
+    assign(Campaign.objects.get(), ada, Assignment.State.SUBMITTED, submission="s2")
+    address = f"{PLACE}outbox/return-requests/"
+    row = staff.post(address, {"submission": "s2", "reason": "Only one view was looked at"}).json()
+    assert (row["kind"], row["state"], row["submission"]) == ("request_return", "planned", "s2")
+    assert staff.post(address, {"submission": "s1", "reason": "Why"}).status_code == 409
+    assert staff.post(address, {"submission": "s2"}).status_code == 400
+
+
 def test_tables_come_as_csv(staff: Caller, ada: Worker) -> None:
     answer = staff.get(f"{PLACE}pay/workers.csv")
     assert answer["Content-Type"].startswith("text/csv")

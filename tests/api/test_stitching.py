@@ -50,6 +50,16 @@ def test_both_sides_are_shown_on_the_ground_and_in_the_views_that_see_them(asked
     assert len(pictures[0]["light"]) == 64
 
 
+@pytest.mark.parametrize("side", ["before", "after"])
+def test_a_side_made_of_nothing_that_is_still_there_is_shown_as_empty(
+    asked: StitchConflict, side: str
+) -> None:
+    for sources in ([], [[10**9, 1]]):
+        StitchConflict.objects.filter(pk=asked.pk).update(**{side: sources})
+        answer = bearer("read").get(f"{BASE}conflicts/{asked.pk}/")
+        assert (answer.status_code, answer.json()[side]) == (200, [])
+
+
 def test_a_decision_is_kept_and_taken_back(asked: StitchConflict) -> None:
     script = bearer("work")
     answer = script.post(f"{BASE}conflicts/{asked.pk}/decide/", {"decision": "same"})

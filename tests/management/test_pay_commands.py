@@ -76,6 +76,11 @@ def test_pay_refuses_what_it_does_not_know(ada: Worker, arguments: list[str]) ->
     assert not MoneyEntry.objects.exists()
 
 
+def test_a_worker_of_another_campaign_is_nobody_in_this_one(ada: Worker) -> None:
+    with pytest.raises(CommandError, match="in this campaign"):
+        run("pay", "--paid", make_worker("bob", "link").pseudonym)
+
+
 def test_an_unknown_campaign_is_told_with_those_there_are(ada: Worker) -> None:
     with pytest.raises(CommandError, match="autumn"):
         call_command("pay", "square", "winter")
@@ -90,6 +95,13 @@ def test_outbox_tells_dry_plans_and_sends(ada: Worker, prolific: Prolific) -> No
     assert prolific.asked == []
     assert "confirmed 3, failed 0, unclear 0" in run("outbox", "--send")
     assert prolific.paid("s1") == 2
+
+
+def test_outbox_asks_for_a_submission_back(ada: Worker) -> None:
+    assign(Campaign.objects.get(), ada, Assignment.State.SUBMITTED, submission="s2")
+    with pytest.raises(CommandError, match="Say why"):
+        run("outbox", "--ask-back", "s2")
+    assert "request_return" in run("outbox", "--ask-back", "s2", "--reason", "Only one view was looked at")
 
 
 def test_outbox_goes_by_files(ada: Worker, tmp_path: Path) -> None:

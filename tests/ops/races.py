@@ -85,6 +85,18 @@ def one_worker() -> Contest:
     return [lambda: assignments.claim(worker, dataset).pk] * 20
 
 
+def one_worker_of_two() -> Contest:
+    """One worker asking for one more in 20 tabs, where the campaign lets him hold two."""
+    from gtm_hit.ops.work import assignments
+    from gtm_hit.ops.work.pools import Pool
+    from tests.campaign_scene import make_campaign
+    from tests.work_scene import make_dataset, make_worker
+
+    campaign = make_campaign(make_dataset("two tabs", frames=60), batches_at_once=2)
+    worker, pool = make_worker("two tabs"), Pool(campaign.dataset, campaign)
+    return [lambda: assignments.claim(worker, pool, another=True).pk] * 20
+
+
 def expired_batch() -> Contest:
     """A worker comes back after the end of his lease while 19 others ask for the only batch."""
     from django.utils import timezone
@@ -233,6 +245,7 @@ RACES = [
     claiming,
     claiming_copies,
     one_worker,
+    one_worker_of_two,
     expired_batch,
     arriving,
     making_batches,

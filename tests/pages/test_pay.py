@@ -31,7 +31,7 @@ PAGES = [
 BUTTONS = [
     *("pay/bonuses/", "pay/paid/", "pay/payout/", "pay/lines/1/take-back/", "platform/account/"),
     *("platform/draft/", "platform/study/", "platform/send/", "platform/rows/1/", "platform/files/done/"),
-    *("platform/submissions/", "platform/messages/"),
+    *("platform/submissions/", "platform/messages/", "platform/return-requests/"),
 ]
 
 
@@ -145,6 +145,14 @@ def test_rows_are_decided_by_hand(staff: Client, ada: Worker) -> None:
     press(staff, place, action="happened")
     row.refresh_from_db()
     assert (row.state, row.decided_by.username) == ("confirmed", "vera")
+
+
+def test_a_submission_is_asked_back_and_why_is_shown(staff: Client, ada: Worker, campaign: Campaign) -> None:
+    assign(campaign, ada, Assignment.State.SUBMITTED, submission="s2")
+    asked = {"submission": "s2", "reason": "Only one view was looked at"}
+    page = press(staff, "platform/return-requests/", **asked)
+    assert "is asked to give the submission back" in page and asked["reason"] in page
+    assert "is decided" in press(staff, "platform/return-requests/", **{**asked, "submission": "s1"})
 
 
 def test_files_are_downloaded_and_marked_as_done(staff: Client, ada: Worker, campaign: Campaign) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from gtm_hit.vision.background import Backgrounds
 from gtm_hit.vision.boxes import Box, Picture
-from gtm_hit.vision.people import as_json, from_json
+from gtm_hit.vision.people import as_json
 from gtm_hit.vision.proposing import Method, Proposer, Scene, Settings, propose, usable_method
 from tests.vision.plaza import CAMERAS, GRID, all_boxes, pictures
 
@@ -74,9 +74,3 @@ def test_cover_without_a_detector_is_the_background() -> None:
 def test_feet_projected_and_clustered_find_who_is_seen_whole() -> None:
     frame = Proposer(SCENE, Method.PROJECTED, Known(WALK[2]), Settings()).frame(pictures(WALK[2]))
     assert len(frame.people) == 2
-
-
-def test_a_proposal_survives_being_written_as_json() -> None:
-    frame = Proposer(SCENE, Method.COVER, Known(WALK[2]), Settings()).frame(pictures(WALK[2]))
-    again = from_json(as_json(frame.people[0]))
-    assert as_json(again) == as_json(frame.people[0])

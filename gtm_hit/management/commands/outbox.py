@@ -7,10 +7,11 @@ from typing import Any
 from django.core.management.base import CommandError
 
 from gtm_hit.crowd.prolific import connect
-from gtm_hit.management.campaign_command import CampaignCommand, campaign_named, manager_named, told
+from gtm_hit.management.campaign_command import CampaignCommand, manager_named, told
+from gtm_hit.management.lookups import campaign_named
 from gtm_hit.management.progress import ProgressLine
 from gtm_hit.models import Campaign, OutboxRow
-from gtm_hit.ops.outbox import handover, overview, planning, rows, sending
+from gtm_hit.ops.outbox import handover, overview, planning, return_requests, rows, sending
 
 SHOWN = 50
 
@@ -22,6 +23,9 @@ class Command(CampaignCommand):
         super().add_arguments(parser)
         action = parser.add_mutually_exclusive_group()
         action.add_argument("--plan-payouts", action="store_true", help="pay what is to be paid through it")
+        action.add_argument(
+            "--ask-back", metavar="SUBMISSION", help="ask its worker to return it, unpaid; takes --reason"
+        )
         action.add_argument("--send", action="store_true", help="send what is planned, now")
         action.add_argument("--retry", type=int, metavar="ROW", help="that failed")
         action.add_argument("--withdraw", type=int, metavar="ROW", help="that is planned")
@@ -31,6 +35,7 @@ class Command(CampaignCommand):
         action.add_argument("--done", choices=list(handover.KINDS), help="what the file says is done")
         action.add_argument("--submissions", type=Path, metavar="FILE", help="take in Prolific's list")
         parser.add_argument("--dry-run", action="store_true", help="with --plan-payouts or --send: only tell")
+        parser.add_argument("--reason", default="", help="with --ask-back: what the worker reads")
         parser.add_argument("--upto", type=int, metavar="ROW", help="with --done: last row of the file")
 
     def handle(self, *, slug: str, campaign: str, **options: Any) -> None:
@@ -48,6 +53,8 @@ class Command(CampaignCommand):
                 rows.decide(row_numbered(campaign, pk), action, by)
         if options["plan_payouts"]:
             return self.plan(campaign, options["dry_run"], by)
+        if options["ask_back"]:
+            return_requests.plan(campaign, options["ask_back"], options["reason"], by)
         if options["send"]:
             return self.send(campaign, options["dry_run"])
         if options["file"]:

@@ -6,8 +6,9 @@ from typing import Any
 
 from django.core.management.base import CommandError
 
-from gtm_hit.management.campaign_command import CampaignCommand, amount, campaign_named, manager_named, told
-from gtm_hit.models import Campaign, MoneyEntry, Worker
+from gtm_hit.management.campaign_command import CampaignCommand, amount, manager_named, told
+from gtm_hit.management.lookups import campaign_named
+from gtm_hit.models import Campaign, MoneyEntry
 from gtm_hit.ops.pay import csv_files, ledger, table
 
 TITLES = (
@@ -60,7 +61,7 @@ class Command(CampaignCommand):
             table.approve_bonuses(campaign, by, [worker], amount(given))
         if options["paid"]:
             given = options["amount"]
-            worker = worker_named(options["paid"])
+            worker = table.worker_named(campaign, options["paid"])
             ledger.mark_paid(campaign, worker, by, amount(given) if given else None, options["note"])
         if pk := options["take_back"]:
             entry = MoneyEntry.objects.select_related("campaign").filter(campaign=campaign, pk=pk).first()
@@ -90,10 +91,3 @@ class Command(CampaignCommand):
             f"{totals.accepted} of {totals.batches} batches accepted; cost {totals.cost}, "
             f"paid {totals.paid}, to pay {totals.to_pay}, forecast {totals.forecast} {campaign.currency}"
         )
-
-
-def worker_named(pseudonym: str) -> Worker:
-    worker = Worker.objects.filter(pseudonym=pseudonym).first()
-    if worker is None:
-        raise CommandError(f"there is no worker {pseudonym}; workers are named by their pseudonyms")
-    return worker

@@ -4,8 +4,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
-from gtm_hit.management.campaigns import campaign_named, qualification_named, worker_named
-from gtm_hit.management.lookups import dataset_named, layer_named
+from gtm_hit.management.lookups import campaign_named, dataset_named, layer_named, qualification_named
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.qualifications import grants, managing
 from gtm_hit.ops.qualifications.managing import Order, PassMarks
@@ -69,9 +68,9 @@ class Command(BaseCommand):
     def change(self, slug: str, name: str, options: dict[str, Any]) -> None:
         found = qualification_named(slug, name)
         if options["grant"]:
-            grants.grant(found, worker_named(options["grant"]), None, options["why"])
+            grants.grant(found, grants.worker_named(options["grant"]), None, options["why"])
         if options["revoke"]:
-            grants.revoke(found, worker_named(options["revoke"]), None, options["why"])
+            grants.revoke(found, grants.worker_named(options["revoke"]), None, options["why"])
         if options["close"]:
             managing.close(found)
         if options["open"]:

@@ -19,7 +19,7 @@ from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.frames.row import FIELDS, Row
 from gtm_hit.ops.frames.rules import checked
 from gtm_hit.ops.pay import clock
-from gtm_hit.ops.work import assignments
+from gtm_hit.ops.work import leases
 
 Author = Worker | AbstractBaseUser | None
 
@@ -117,11 +117,11 @@ def save_frame(
 
 def write_save(layer: Layer, frame: Frame, save: Save, rows: list[Row]) -> FrameState:
     # Always in this order, assignment then frame: two orders would let two requests wait for each other.
-    assignment = assignments.locked_for_layer(layer)
+    assignment = leases.locked_for_layer(layer)
     head, _created = LayerFrame.objects.select_for_update(no_key=True).get_or_create(layer=layer, frame=frame)
     if repeated := Save.objects.select_related("worker", "user").filter(save_id=save.save_id).first():
         return repeated_answer(repeated, save, head, frame)
-    assignments.require_editable(layer, assignment, save.worker)
+    leases.require_editable(layer, assignment, save.worker)
     if head.revision != save.revision - 1:
         raise StaleSave(read_frame(layer, frame))
     write_rows(layer, frame, rows)
@@ -138,7 +138,7 @@ def write_save(layer: Layer, frame: Frame, save: Save, rows: list[Row]) -> Frame
         changed_at=timezone.now(),
     )
     if assignment is not None:
-        assignments.extend(assignment)
+        leases.extend(assignment)
     return state_of(save, frame)
 
 

@@ -26,6 +26,7 @@ from gtm_hit.ops.calibration.versions import in_place_id
 from gtm_hit.ops.frames.neighbours import accepted_beside
 from gtm_hit.ops.frames.row import Row
 from gtm_hit.ops.frames.saving import rows_by_frame
+from gtm_hit.ops.review.mending import layer_that_counts
 from gtm_hit.scoring.faults import Fault, FaultKind, Positions, plant, planted
 
 CARRIED, PROPOSED = Annotation.State.CARRIED.value, Annotation.Origin.PROPOSED.value
@@ -34,7 +35,7 @@ CARRIED, PROPOSED = Annotation.State.CARRIED.value, Annotation.Origin.PROPOSED.v
 def prepare(assignment: Assignment) -> list[PlantedFault]:
     """Fill a new assignment's frames; once: again it changes nothing."""
     batch = assignment.batch
-    planting = Planting.objects.filter(campaign=batch.campaign_id).select_related("starting_layer").first()
+    planting = Planting.objects.filter(campaign=batch.campaign_id).first()
     if planting is None or LayerFrame.objects.filter(layer=assignment.layer_id).exists():
         return []
     frames = list(Frame.objects.filter(batches=batch).order_by("number"))
@@ -48,7 +49,8 @@ def prepare(assignment: Assignment) -> list[PlantedFault]:
 
 def starting_people(planting: Planting, batch: Batch, frames: list[Frame]) -> dict[int, list[Row]]:
     """By frame number, of the frames that have somebody."""
-    sources = [planting.starting_layer] if planting.starting_layer else shared_work(batch)
+    chosen = planting.starting_layer_id
+    sources = [chosen] if chosen else shared_work(batch)
     number_of = {frame.pk: frame.number for frame in frames}
     people: dict[int, list[Row]] = {}
     for layer in sources:
@@ -59,9 +61,9 @@ def starting_people(planting: Planting, batch: Batch, frames: list[Frame]) -> di
     return people
 
 
-def shared_work(batch: Batch) -> list[Layer]:
-    """Accepted work of the batches beside it: their frames that are this batch's too begin with it."""
-    return [assignment.layer for _number, assignment in sorted(accepted_beside(batch).items())]
+def shared_work(batch: Batch) -> list[int]:
+    """Layers of accepted work beside it: their frames that are this batch's too begin with it."""
+    return [layer_that_counts(assignment) for _number, assignment in sorted(accepted_beside(batch).items())]
 
 
 def to_look_at(row: Row) -> Row:

@@ -14,7 +14,7 @@ from django.db import transaction
 
 from gtm_hit.models import Assignment
 from gtm_hit.ops.gold.withdraw import withdraw
-from gtm_hit.ops.qualifications import attempts
+from gtm_hit.ops.qualifications import judging
 
 TASK = "gtm_hit.tasks.score_assignment"
 
@@ -24,7 +24,7 @@ logger = logging.getLogger(__name__)
 def submitted(assignment: Assignment) -> None:
     """In the transaction that submits it."""
     withdraw(assignment)
-    attempts.judge(assignment)
+    judging.judge(assignment)
     if assignment.batch.campaign_id is not None:
         transaction.on_commit(partial(send, assignment.pk))
 

@@ -141,28 +141,6 @@ def plan_missing(campaign: Campaign, by: User | None) -> list[OutboxRow]:
     return [row for row in found if row]
 
 
-def plan_return_request(assignment: Assignment, reasons: list[str], by: User | None) -> OutboxRow:
-    """Ask a worker to give the submission back unpaid, which spares him a rejection. Once per submission."""
-    campaign = assignment.batch.campaign
-    if campaign is None or campaign.platform not in PLATFORMS or not assignment.submission:
-        raise PlanError(_("This platform cannot ask anybody to return work."))
-    if not reasons or not all(each.strip() for each in reasons):
-        raise PlanError(_("Say why the work should be returned."))
-    row, _made = OutboxRow.objects.exclude(state=State.WITHDRAWN).get_or_create(
-        campaign=campaign,
-        key=f"{Kind.REQUEST_RETURN}:{assignment.submission}",
-        defaults={
-            "kind": Kind.REQUEST_RETURN,
-            "worker_id": assignment.worker_id,
-            "assignment": assignment,
-            "submission": assignment.submission,
-            "payload": {"reasons": reasons},
-            "planned_by": by,
-        },
-    )
-    return row
-
-
 def payouts(campaign: Campaign, only: Iterable[str] | None = None) -> list[Payout]:
     """Whom the platform would be asked to pay how much: what is owed, not paid and not on its way."""
     chosen = None if only is None else set(only)

@@ -14,8 +14,8 @@ from gtm_hit.ops.outbox import accounts, rows
 from gtm_hit.ops.outbox.platform import Platform
 from gtm_hit.ops.work import giving_back
 
-FINAL = {"APPROVED", "REJECTED", "RETURNED", "SCREENED OUT", "PARTIALLY APPROVED"}
-LEFT = {"RETURNED", "TIMED-OUT"}
+FINAL = {"APPROVED", "REJECTED", Submission.RETURNED, "SCREENED OUT", "PARTIALLY APPROVED"}
+LEFT = {Submission.RETURNED, "TIMED-OUT"}
 DECIDED = {"APPROVED": OutboxRow.Kind.APPROVE, "REJECTED": OutboxRow.Kind.REJECT}
 STATUS_CHANGE = "submission.status.change"
 
@@ -68,7 +68,7 @@ def newest(status: str, at: datetime, told: Told) -> tuple[str, datetime]:
 
 def follow(campaign: Campaign, told: Told) -> None:
     if told.status in LEFT:
-        giving_back.of_submission(campaign, told.submission)
+        giving_back.of_submission(campaign, told.submission, f"{told.status} at the platform")
     if kind := DECIDED.get(told.status):
         waiting = OutboxRow.objects.filter(
             campaign=campaign, submission=told.submission, kind=kind, state__in=rows.OPEN

@@ -12,6 +12,7 @@ from django.db.models import Q, QuerySet, Sum
 from django.utils.translation import gettext as _
 
 from gtm_hit.models import Assignment, Batch, Campaign, LayerFrame, MoneyEntry, OutboxRow, Worker
+from gtm_hit.ops.campaigns import seats
 from gtm_hit.ops.pay import ledger
 from gtm_hit.ops.pay.sums import CENT, NOTHING, Balance, bonus_to_floor, exact, hours, per_hour
 
@@ -193,7 +194,9 @@ def lines_of(campaign: Campaign) -> QuerySet[MoneyEntry]:
     return found.select_related("worker", "user", "assignment__batch", "reversal").order_by("-at", "-pk")
 
 
-def with_settled(campaign: Campaign) -> None:
-    """Write down what decisions changed since the last time."""
-    with ledger.holding(campaign) as held:
-        ledger.settle(held)
+def worker_named(campaign: Campaign, name: str) -> Worker:
+    """By pseudonym, or by the platform's own id. Raises PayError."""
+    found = seats.named(campaign, name)
+    if found is None:
+        raise ledger.PayError(_("There is no worker %(name)s in this campaign.") % {"name": name})
+    return found

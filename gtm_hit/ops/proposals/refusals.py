@@ -10,7 +10,7 @@ from django.db import transaction
 from gtm_hit.models import Frame, Layer, Refusal, Worker
 from gtm_hit.ops.frames.saving import Author
 from gtm_hit.ops.proposals.errors import ProposalError
-from gtm_hit.ops.work import assignments
+from gtm_hit.ops.work import leases
 
 NEAR = 0.35  # metres: proposals this close to a refused place are of the same nobody
 MOST = 2000  # of one frame
@@ -25,7 +25,7 @@ def refuse(layer: Layer, frame: Frame, position: int, author: Author, refused: b
         raise ProposalError(f"position {position} is not on the grid")
     with transaction.atomic():
         if isinstance(author, Worker):
-            assignments.require_editable(layer, assignments.locked_for_layer(layer), author)
+            leases.require_editable(layer, leases.locked_for_layer(layer), author)
         there = Refusal.objects.filter(layer=layer, frame=frame)
         if not refused:
             there.filter(position=position).delete()

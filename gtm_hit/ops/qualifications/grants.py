@@ -10,6 +10,15 @@ from gtm_hit.models import Qualification, QualificationAttempt, QualificationGra
 from gtm_hit.ops.qualifications.managing import QualificationError
 
 
+def worker_named(pseudonym: str) -> Worker:
+    """Of whatever platform: who comes to qualify need not have worked here. Raises QualificationError."""
+    # PostgreSQL has no strings with a zero byte and fails instead of finding nothing.
+    found = None if "\x00" in pseudonym else Worker.objects.filter(pseudonym=pseudonym).first()
+    if found is None:
+        raise QualificationError(_("There is no worker %(name)s.") % {"name": pseudonym})
+    return found
+
+
 def grant(qualification: Qualification, worker: Worker, by: User | None, why: str = "") -> QualificationGrant:
     """By hand; once: whoever has it already keeps the grant he has."""
     if (before := newest(qualification, worker)) and before.granted:

@@ -11,7 +11,7 @@ from django.utils.translation import gettext as _
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import Cylinder, rectangles
 from gtm_hit.models import Annotation, Dataset, QualificationAttempt
-from gtm_hit.ops.qualifications.attempts import Sides, sides
+from gtm_hit.ops.qualifications.judging import Sides, sides
 from gtm_hit.scoring.truth import Mistake, MistakeKind, mistakes
 
 MOST_SHOWN = 30

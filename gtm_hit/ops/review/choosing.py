@@ -17,6 +17,8 @@ from django.utils.crypto import salted_hmac
 from gtm_hit.models import Assignment, Campaign, ReviewChoice, Transition
 from gtm_hit.ops.review.happened import Following, Happened
 from gtm_hit.ops.review.machine import Action
+from gtm_hit.ops.scores import suspicion as scores
+from gtm_hit.ops.scores import words
 
 log = logging.getLogger(__name__)
 
@@ -38,10 +40,7 @@ class Suspicion:
 def by_scores(assignment: Assignment) -> Suspicion | None:
     if assignment.batch.campaign_id is None:
         return None
-    # Scores read frames, which know of assignments, which know of reviews.
-    from gtm_hit.ops.scores import suspicion, words
-
-    found = suspicion.suspicion(assignment)
+    found = scores.suspicion(assignment)
     return Suspicion(found.value, tuple(words.signal_in_words(asdict(signal)) for signal in found.signals))
 
 

@@ -16,6 +16,10 @@ def give_code(asked: Asked) -> None:
     asked.changes |= {"submitted_at": timezone.now(), "code": code}
 
 
+def end_lease(asked: Asked) -> None:
+    asked.changes |= {"expires_at": timezone.now()}
+
+
 def use_mend(asked: Asked) -> None:
     Mend.objects.filter(assignment=asked.assignment).update(accepted_at=timezone.now())
 

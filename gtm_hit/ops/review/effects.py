@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator
 from django.contrib.auth.models import User
 
 from gtm_hit.models import Assignment
+from gtm_hit.ops.gold import submission
+from gtm_hit.ops.outbox import planning
 from gtm_hit.ops.review import choosing
 from gtm_hit.ops.review.happened import Following, Happened
 from gtm_hit.ops.review.machine import DECISIONS, Action
@@ -21,9 +23,6 @@ def take_out_faults(happened: Happened) -> None:
     batch = happened.assignment.batch
     if batch.campaign_id is None and batch.qualification_id is None:
         return
-    # Gold reads and writes frames, which know of assignments, which know of reviews.
-    from gtm_hit.ops.gold import submission
-
     submission.submitted(happened.assignment)
 
 
@@ -33,8 +32,6 @@ def tell_platform(happened: Happened) -> None:
         return
     if happened.assignment.state == Assignment.State.EXPIRED:
         return  # taken back: whoever gets the batch next is decided about
-    from gtm_hit.ops.outbox import planning
-
     row = happened.transition
     planning.plan_decision(
         happened.assignment,

@@ -20,6 +20,7 @@ State = Assignment.State
 class Action(StrEnum):
     SUBMIT = "submit"
     EXPIRE = "expire"
+    GIVE_UP = "give_up"
     RENEW = "renew"
     ACCEPT = "accept"
     ACCEPT_UNSEEN = "accept_unseen"
@@ -63,6 +64,10 @@ TABLE: dict[Action, Step] = {
         needs=(needs.time_left, needs.frames_done), does=(deeds.give_code,),
     ),
     Action.EXPIRE: step([State.LEASED], State.EXPIRED, SYSTEM, needs=(needs.time_over,)),
+    Action.GIVE_UP: step(
+        [State.LEASED, State.RETURNED], State.EXPIRED, SYSTEM,
+        needs=(needs.reason,), does=(deeds.end_lease,),
+    ),
     Action.RENEW: step([State.EXPIRED], State.LEASED, WORKER, needs=(needs.batch_free,)),
     Action.ACCEPT: step([State.SUBMITTED], State.ACCEPTED, REVIEWER),
     Action.ACCEPT_UNSEEN: step([State.SUBMITTED], State.ACCEPTED, SYSTEM, needs=(needs.not_chosen,)),

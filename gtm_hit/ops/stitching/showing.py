@@ -65,7 +65,8 @@ def detail(conflict: StitchConflict) -> Detail:
 
 def _path(dataset: Dataset, sources: Sequence[Sequence[int]], when: Q, order: str) -> list[Place]:
     """The mean place per frame, of all it was made of."""
-    whose = reduce(or_, (Q(layer=layer, person=person) for layer, person in sources))
+    nobody = Q(pk__in=[])
+    whose = reduce(or_, (Q(layer=layer, person=person) for layer, person in sources), nobody)
     rows = Annotation.objects.filter(whose, when).order_by(f"{order}frame__number")
     found = list(rows.values_list("frame__number", "position")[: PATH * len(sources)])
     places: dict[int, list[list[float]]] = defaultdict(list)

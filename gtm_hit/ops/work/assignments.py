@@ -6,19 +6,20 @@ also block PostgreSQL's checks of foreign keys at the end of other transactions.
 
 from __future__ import annotations
 
-from datetime import datetime, timedelta
+from datetime import datetime
 from typing import Any
 
-from django.conf import settings
 from django.db import IntegrityError, transaction
 from django.db.models import Count, Exists, OuterRef, Q, QuerySet, Sum
 from django.utils import timezone
 
-from gtm_hit.models import Assignment, Batch, Campaign, Frame, Layer, Save, Worker
+from gtm_hit.models import Assignment, Batch, Frame, Layer, Save, Submission, Worker
 from gtm_hit.ops.campaigns import entry_rules
+from gtm_hit.ops.gold import starting
 from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.review.transitions import expire_all, transition
 from gtm_hit.ops.work import unsaved_leases
+from gtm_hit.ops.work.leases import first_lease_end, lease_end
 from gtm_hit.ops.work.pools import Place, Pool, pool_of
 from gtm_hit.ops.work.readiness import AssignmentError as AssignmentError
 from gtm_hit.ops.work.readiness import ReadOnly as ReadOnly
@@ -44,20 +45,6 @@ class BusyElsewhere(AssignmentError):
     def __init__(self, assignment: Assignment) -> None:
         super().__init__(f"{assignment.worker} still works on {assignment.batch}")
         self.assignment = assignment
-
-
-def lease_end(campaign: Campaign | None) -> datetime:
-    return timezone.now() + timedelta(minutes=lease_minutes(campaign))
-
-
-def first_lease_end(campaign: Campaign | None) -> datetime:
-    """Until something is saved; then `extend` gives the whole time."""
-    minutes = min(settings.FIRST_SAVE_MINUTES, lease_minutes(campaign))
-    return timezone.now() + timedelta(minutes=minutes)
-
-
-def lease_minutes(campaign: Campaign | None) -> int:
-    return campaign.lease_minutes if campaign else settings.LEASE_MINUTES
 
 
 def expire_leases(now: datetime | None = None) -> int:
@@ -130,15 +117,25 @@ def claim_once(worker: Worker, pool: Pool, address: str, another: bool) -> Assig
 
 
 def require_admitted(worker: Worker, pool: Pool) -> None:
-    """Raises NotAdmitted, BusyElsewhere, or NoFreeBatch when the submission's one batch is done."""
+    """Raises NotAdmitted, BusyElsewhere, or NoFreeBatch when the submission is over."""
     if pool.campaign is None:
         elsewhere = running().filter(worker=worker, batch__campaign=None).exclude(batch__dataset=pool.dataset)
         if other := elsewhere.select_related("batch__dataset").first():
             raise BusyElsewhere(other)
     elif refusal := entry_rules.refusal(pool.campaign, worker):
         raise entry_rules.NotAdmitted(refusal)
-    if pool.submission and pool.mine(worker).filter(submitted_at__isnull=False).exists():
-        raise NoFreeBatch(f"{pool.dataset}: submission {pool.submission} had its batch")
+    if is_over(worker, pool):
+        raise NoFreeBatch(f"{pool.dataset}: submission {pool.submission} had its batch or was given back")
+
+
+def is_over(worker: Worker, pool: Pool) -> bool:
+    """Whether nothing can be handed in under the seat's submission any more, so that nobody works unpaid."""
+    if not pool.submission:
+        return False
+    returned = Submission.objects.filter(
+        campaign=pool.campaign, submission=pool.submission, status=Submission.RETURNED
+    )
+    return pool.mine(worker).filter(submitted_at__isnull=False).exists() or returned.exists()
 
 
 def holding(batch: OuterRef) -> Exists:
@@ -166,7 +163,7 @@ def own_expired(worker: Worker, place: Place) -> QuerySet[Assignment]:
 def work_left(worker: Worker, place: Place) -> bool:
     """Whether `claim` would find something; nothing is taken."""
     pool = pool_of(place)
-    if pool.campaign and entry_rules.refusal(pool.campaign, worker):
+    if is_over(worker, pool) or (pool.campaign and entry_rules.refusal(pool.campaign, worker)):
         return False
     return own_expired(worker, pool).exists() or free_batches(worker, pool).exists()
 
@@ -209,40 +206,9 @@ def lease(batch: Batch, worker: Worker, address: str, submission: str = "") -> A
         address=unsaved_leases.kept(address),
         submission=submission,
     )
-    begun(made)
+    if batch.campaign:
+        starting.prepare(made)
     return made
-
-
-def begun(assignment: Assignment) -> None:
-    if assignment.batch.campaign_id is None:
-        return
-    # Whoever fills assignments reads and writes frames, which know of assignments.
-    from gtm_hit.ops.gold import starting
-
-    starting.prepare(assignment)
-
-
-def locked_for_layer(layer: Layer) -> Assignment | None:
-    if layer.kind != Layer.Kind.ASSIGNMENT:
-        return None
-    rows = Assignment.objects.select_related("batch__campaign")
-    return rows.select_for_update(no_key=True, of=("self",)).filter(layer=layer).first()
-
-
-def require_editable(layer: Layer, assignment: Assignment | None, worker: Worker | None) -> None:
-    """A worker's layer is changed by that worker only, and only while he holds the batch."""
-    if layer.kind != Layer.Kind.ASSIGNMENT and worker is None:
-        return
-    if assignment is None or worker is None or assignment.worker_id != worker.pk:
-        raise ReadOnly("not_author")
-    if reason := read_only_reason(assignment):
-        raise ReadOnly(reason)
-
-
-def extend(assignment: Assignment) -> None:
-    """Activity keeps a lease alive."""
-    end = lease_end(assignment.batch.campaign)
-    Assignment.objects.filter(pk=assignment.pk, state=State.LEASED).update(expires_at=end)
 
 
 def submit(assignment: Assignment) -> Assignment:

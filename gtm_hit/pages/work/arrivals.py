@@ -9,7 +9,7 @@ from __future__ import annotations
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 
-from gtm_hit.crowd.platform import Arrival, ArrivalError, Platform
+from gtm_hit.crowd.platform import Arrival, ArrivalError
 from gtm_hit.crowd.platforms import platform_of
 from gtm_hit.models import Campaign, Worker
 from gtm_hit.ops.campaigns import links as campaign_links
@@ -67,7 +67,3 @@ def to_seat(worker: Worker, campaign: Campaign, arrival: Arrival) -> HttpRespons
 def arrival_of(seat: links.Seat) -> Arrival:
     """What the seat remembers of how its worker came."""
     return Arrival(seat.worker.external_id, seat.submission, seat.submit_to)
-
-
-def platform_of_seat(seat: links.Seat) -> Platform | None:
-    return platform_of(seat.campaign) if seat.campaign else None

@@ -11,7 +11,7 @@ from django.views.decorators.cache import cache_control, never_cache
 from django.views.decorators.http import require_http_methods, require_safe
 
 from gtm_hit.models import Qualification, QualificationAttempt
-from gtm_hit.ops.qualifications import attempts, crops, grants, mistakes, requirements
+from gtm_hit.ops.qualifications import attempts, crops, grants, judging, mistakes, requirements
 from gtm_hit.ops.work import assignments, links
 from gtm_hit.pages.work.workplace import valid_links_only
 
@@ -79,7 +79,7 @@ def result_page(
         "offer": offer(qualification, seat),
         "qualification": qualification,
         "attempt": judged,
-        "marks": attempts.marks(judged) if judged else [],
+        "marks": judging.marks(judged) if judged else [],
         "mistakes": shown,
         "count": count,
         "more": count - len(shown),

@@ -52,6 +52,6 @@ export class KeyRepeat {
 }
 
 /** @param {number} repeats */
-export function paceAfter(repeats) {
+function paceAfter(repeats) {
   return PACES.find(([after]) => repeats > after)?.[1] ?? 1;
 }

@@ -9,7 +9,7 @@
 import { isGuess } from "../../truth/propagation.js";
 
 /** Metres between an annotation, or a refused place, and a proposal of the same person. */
-export const SAME = 0.35;
+const SAME = 0.35;
 const GUESSED = 0.6; // metres that a person carried over may be off
 
 /**

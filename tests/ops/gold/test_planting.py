@@ -15,6 +15,9 @@ from gtm_hit.ops.frames.metres import placed
 from gtm_hit.ops.gold import planting
 from gtm_hit.ops.gold.errors import GoldError
 from gtm_hit.ops.gold.withdraw import withdraw
+from gtm_hit.ops.review import mending
+from gtm_hit.ops.review.machine import Action
+from gtm_hit.ops.review.transitions import transition
 from gtm_hit.ops.work import assignments, unsaved_leases
 from gtm_hit.ops.work.pools import Pool
 from gtm_hit.scoring.faults import ALL_KINDS, FaultKind
@@ -28,8 +31,9 @@ from tests.gold_scene import (
     take,
     truth_of_square,
 )
+from tests.ops.review.scene import make_reviewer
 from tests.ops.square_layer import export
-from tests.work_scene import make_layer, make_worker
+from tests.work_scene import make_layer, make_worker, row, save
 
 pytestmark = pytest.mark.django_db
 
@@ -214,6 +218,20 @@ def test_frames_shared_with_accepted_work_start_with_it(scene: tuple[Campaign, L
     assignment = take(campaign, "bob")
     assert set(places(assignment.layer)) == {45}
     assert PlantedFault.objects.filter(assignment=assignment).count() == 1
+
+
+def test_frames_shared_with_work_that_a_reviewer_put_right_start_as_he_left_them(
+    scene: tuple[Campaign, Layer],
+) -> None:
+    campaign, _truth = scene
+    planting.settle(campaign, None, 0.0, 1, [FaultKind.SHIFTED])
+    first, rita = hand_in(take(campaign), truth_of_square()), make_reviewer()
+    shared = first.batch.frames.order_by("number").last()
+    mended = mending.mend(first, rita).layer
+    save(mended, shared, [row(1, 9)], 1, author=rita, done=True)
+    transition(first, Action.ACCEPT_MENDED, rita)
+    campaign.batches.get(number=2).frames.add(shared)
+    assert take(campaign, "bob").layer.annotations.get(frame=shared).position == 9
 
 
 def test_batches_of_no_campaign_cost_no_query_more(scene: tuple[Campaign, Layer]) -> None:

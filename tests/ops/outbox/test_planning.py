@@ -168,10 +168,3 @@ def test_what_failed_is_not_tried_again_once_it_was_paid_otherwise(
     with pytest.raises(rows.RowError):
         rows.retry(row, None)
     assert OutboxRow.objects.get().state == "failed"
-
-
-def test_a_return_is_asked_for_once(work: Assignment, manager: User) -> None:
-    first = planning.plan_return_request(work, ["Withdrew consent"], manager)
-    assert planning.plan_return_request(work, ["again"], manager) == first
-    with pytest.raises(planning.PlanError):
-        planning.plan_return_request(work, [" "], manager)

@@ -12,7 +12,7 @@ from django.utils import timezone
 from gtm_hit.crowd.prolific import connect
 from gtm_hit.models import Assignment, Campaign, MoneyEntry, OutboxRow, PlatformAccount, Worker
 from gtm_hit.ops.jobs import queue
-from gtm_hit.ops.outbox import accounts, planning, reconciling, rows, sending
+from gtm_hit.ops.outbox import accounts, planning, reconciling, return_requests, rows, sending
 from gtm_hit.ops.pay import table
 from tests.ops.outbox.conftest import REASON, decide, hurry, send, states
 from tests.paid_campaign import assign
@@ -57,7 +57,7 @@ def test_a_rejection_reaches_the_platform_and_moves_no_money(
 
 
 def test_a_return_is_asked_for(work: Assignment, campaign: Campaign, prolific: Prolific) -> None:
-    planning.plan_return_request(work, ["Withdrew consent"], None)
+    return_requests.plan(campaign, "s1", "Withdrew consent", None)
     send(campaign)
     assert prolific.submissions["s1"]["return_requested"]
 

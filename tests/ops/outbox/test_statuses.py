@@ -13,6 +13,8 @@ from gtm_hit.models import Assignment, Campaign, OutboxRow, Submission, Worker
 from gtm_hit.ops.outbox import statuses
 from gtm_hit.ops.outbox.statuses import FINAL, Told, newest, observe, take_in
 from gtm_hit.ops.pay import table
+from gtm_hit.ops.work import assignments
+from gtm_hit.ops.work.pools import Pool
 from tests.ops.outbox.conftest import REASON, decide
 from tests.paid_campaign import assign, become
 from tests.prolific_server import Prolific
@@ -35,6 +37,20 @@ def test_work_given_up_at_the_platform_frees_its_batch(campaign: Campaign, ada: 
     work = assign(campaign, ada, State.LEASED, submission="s1")
     assert observe(campaign, told(status))
     assert state(work) == "expired"
+    step = work.transitions.get()
+    assert (step.from_state, step.action, step.reason) == ("leased", "give_up", f"{status} at the platform")
+
+
+def test_nobody_works_on_unpaid_under_a_submission_that_was_given_back(
+    campaign: Campaign, ada: Worker
+) -> None:
+    seat = Pool(campaign.dataset, campaign, "s1")
+    assignments.claim(ada, seat)
+    observe(campaign, told("RETURNED"))
+    assert not assignments.work_left(ada, seat)
+    with pytest.raises(assignments.NoFreeBatch):
+        assignments.claim(ada, seat)
+    assert assignments.claim(ada, Pool(campaign.dataset, campaign, "s2"))
 
 
 @pytest.mark.parametrize("kept", [State.SUBMITTED, State.ACCEPTED, State.REJECTED])

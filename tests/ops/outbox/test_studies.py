@@ -8,6 +8,7 @@ from django.contrib.auth.models import User
 
 from gtm_hit.crowd.prolific import connect
 from gtm_hit.models import Campaign, PlatformAccount
+from gtm_hit.ops.campaigns.platform_settings import Prolific as Settings
 from gtm_hit.ops.outbox import studies
 from gtm_hit.ops.outbox.platform import Refused
 from tests.prolific_server import Prolific
@@ -34,6 +35,24 @@ def test_a_study_is_drafted_from_the_campaigns_rules(fresh: Campaign, prolific: 
         "https://gtm.example/join/x/?PROLIFIC_PID={{%PROLIFIC_PID%}}&"
     )
     assert made["completion_codes"][0]["code"] == account.completion_code
+
+
+def test_a_study_names_parameters_and_code_as_the_campaigns_rules_do(
+    fresh: Campaign, prolific: Prolific
+) -> None:
+    fresh.platform_settings = {"submission_parameter": "piece", "code_completed": "DONE1"}
+    fresh.save()
+    made = prolific.studies[draft(fresh).study]
+    assert made["external_study_url"].endswith("&piece={{%SESSION_ID%}}")
+    assert made["completion_codes"][0]["code"] == "DONE1"
+
+
+def test_a_code_that_workers_do_not_bring_is_refused(fresh: Campaign, prolific: Prolific) -> None:
+    fresh.platform_settings = {"code_completed": "DONE1"}
+    fresh.save()
+    with pytest.raises(studies.StudyError, match="DONE1"):
+        draft(fresh, completion_code="OTHER")
+    assert prolific.count("POST /api/v1/studies/") == 0
 
 
 def test_a_second_draft_is_refused(fresh: Campaign, prolific: Prolific) -> None:
@@ -97,4 +116,4 @@ def test_a_pasted_link_gets_the_placeholders_for_who_comes(
 ) -> None:
     sent = prolific.studies[draft(fresh, address=address).study]["external_study_url"]
     assert sent.startswith(address) and sent.count("?") == 1 and "SESSION_ID={{%SESSION_ID%}}" in sent
-    assert studies.with_placeholders(sent) == sent
+    assert studies.with_placeholders(Settings(), sent) == sent

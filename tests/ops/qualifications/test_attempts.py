@@ -9,7 +9,7 @@ from django.utils import timezone
 
 from gtm_hit.models import Assignment, Batch, Campaign, Qualification, QualificationGrant, Worker
 from gtm_hit.ops import overview
-from gtm_hit.ops.qualifications import attempts, grants, managing
+from gtm_hit.ops.qualifications import attempts, grants, judging, managing
 from gtm_hit.ops.qualifications.managing import Order, PassMarks, QualificationError
 from gtm_hit.ops.qualifications.requirements import missing_qualifications, offered
 from gtm_hit.ops.work import assignments, batches
@@ -169,7 +169,7 @@ def test_a_closed_one_is_not_offered_and_lets_nobody_begin(basics: Qualification
 def test_a_try_that_is_judged_stays_as_it_was_judged(basics: Qualification, alice: Worker) -> None:
     failed = fail(basics, alice)
     managing.change(basics, PassMarks(min_recall=0, min_precision=0, min_idf1=0), 3, "")
-    attempts.judge(failed)
+    judging.judge(failed)
     failed.attempt.refresh_from_db()
     assert failed.attempt.passed is False
 

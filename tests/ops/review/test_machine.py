@@ -24,7 +24,7 @@ from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.review import mending
 from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.review.transitions import transition
-from gtm_hit.ops.work import assignments
+from gtm_hit.ops.work import assignments, giving_back
 from tests.ops.review.scene import REASON, into_campaign, make_reviewer, make_work, pool, run_out
 from tests.work_scene import do_frames, make_worker
 
@@ -33,6 +33,8 @@ ALLOWED = {
     ("leased", "submit", "submitted"),
     ("returned", "submit", "submitted"),
     ("leased", "expire", "expired"),
+    ("leased", "give_up", "expired"),
+    ("returned", "give_up", "expired"),
     ("expired", "renew", "leased"),
     ("submitted", "accept", "accepted"),
     ("submitted", "accept_unseen", "accepted"),
@@ -45,7 +47,7 @@ ALLOWED = {
     ("rejected", "overturn", "accepted"),
 }
 BY_WORKERS = {"submit", "renew", "appeal"}
-BY_SYSTEM = {"expire", "accept_unseen"}
+BY_SYSTEM = {"expire", "give_up", "accept_unseen"}
 STEPS: Counter[str] = Counter()
 
 people = st.integers(0, 6)
@@ -183,6 +185,13 @@ class Reviewing(RuleBasedStateMachine):
         if mine := self.some(pick, "returned"):
             step = Action.TAKE_BACK
             self.try_step(step.value, lambda: transition(mine, step, self.users[who], reason=REASON))
+
+    @there_is("leased", "returned", "submitted")
+    @rule(pick=picks)
+    def give_up_at_the_platform(self, pick: int) -> None:
+        """Which comes too late for what was handed in meanwhile."""
+        if mine := self.some(pick, "leased", "returned", "submitted"):
+            self.try_step("give_up", lambda: giving_back.given_up(mine, "returned at the platform"))
 
     @invariant()
     def every_step_is_on_record_and_follows_the_one_before(self) -> None:

@@ -60,6 +60,12 @@ def test_one_worker_in_twenty_tabs_gets_one_batch(races: Races) -> None:
     assert isinstance(races["one_worker"][0], int)
 
 
+def test_one_worker_in_twenty_tabs_gets_two_batches_where_two_are_allowed(races: Races) -> None:
+    assert len(races["one_worker_of_two"]) == 20
+    assert len(set(races["one_worker_of_two"])) == 2
+    assert all(isinstance(answer, int) for answer in races["one_worker_of_two"])
+
+
 def test_an_expired_batch_goes_to_one_worker_only(races: Races) -> None:
     got = Counter(races["expired_batch"])
     assert got.pop("NoFreeBatch") == 19

@@ -10,13 +10,11 @@ from django.db import connection
 from django.test import Client
 from django.test.utils import CaptureQueriesContext
 
-from gtm_hit.crowd.entry import PLATFORMS
+from gtm_hit.crowd.entry import WORKER_PARAMETERS
 from gtm_hit.models import Assignment, Dataset, Worker
 from gtm_hit.ops.work import assignments, batches, entry_links, links
 from gtm_hit.pages.work import workplace
 from tests.work_scene import finish, make_dataset, make_worker
-
-PARAMETERS = [name for platform in PLATFORMS for name in platform.worker_parameters]
 
 
 @pytest.fixture
@@ -51,7 +49,7 @@ def without_form_secret(page: str) -> str:
     return page[:start] + page[page.index(">", start) :]
 
 
-@pytest.mark.parametrize("name", PARAMETERS)
+@pytest.mark.parametrize("name", WORKER_PARAMETERS)
 def test_another_browser_with_her_id_is_not_her(
     alice: Worker, dataset: Dataset, entry: str, name: str
 ) -> None:
