@@ -11,7 +11,6 @@ from django.contrib.auth.models import User
 from django.core.management.base import BaseCommand, CommandError
 
 from gtm_hit.management.acting import acting_as
-from gtm_hit.management.lookups import dataset_named
 from gtm_hit.models import Campaign
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.errors import OperationError
@@ -24,16 +23,6 @@ class CampaignCommand(BaseCommand):
         parser.add_argument(
             "--as", dest="username", metavar="USER", help="under whose name it is written down; a manager"
         )
-
-
-def campaign_named(slug: str, name: str) -> Campaign:
-    """With its dataset; raises CommandError that tells which campaigns there are."""
-    found = Campaign.objects.select_related("dataset").filter(dataset=dataset_named(slug))
-    campaign = found.filter(name=name).first()
-    if campaign is None:
-        names = ", ".join(found.values_list("name", flat=True)) or "none"
-        raise CommandError(f"no campaign {name} in dataset {slug}; there are: {names}")
-    return campaign
 
 
 def manager_named(username: str | None, campaign: Campaign) -> User | None:

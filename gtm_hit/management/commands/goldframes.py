@@ -4,8 +4,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
-from gtm_hit.management.campaigns import campaign_named
-from gtm_hit.management.lookups import layer_named
+from gtm_hit.management.lookups import campaign_named, layer_named
 from gtm_hit.models import Campaign
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.gold import frames, results

@@ -7,7 +7,8 @@ from typing import Any
 from django.core.management.base import CommandError
 
 from gtm_hit.crowd.prolific import connect
-from gtm_hit.management.campaign_command import CampaignCommand, campaign_named, manager_named, told
+from gtm_hit.management.campaign_command import CampaignCommand, manager_named, told
+from gtm_hit.management.lookups import campaign_named
 from gtm_hit.management.progress import ProgressLine
 from gtm_hit.models import Campaign, OutboxRow
 from gtm_hit.ops.outbox import handover, overview, planning, rows, sending

@@ -6,8 +6,9 @@ from typing import Any
 
 from django.core.management.base import CommandError
 
-from gtm_hit.management.campaign_command import CampaignCommand, amount, campaign_named, manager_named, told
-from gtm_hit.models import Campaign, MoneyEntry, Worker
+from gtm_hit.management.campaign_command import CampaignCommand, amount, manager_named, told
+from gtm_hit.management.lookups import campaign_named, worker_named
+from gtm_hit.models import Campaign, MoneyEntry
 from gtm_hit.ops.pay import csv_files, ledger, table
 
 TITLES = (
@@ -90,10 +91,3 @@ class Command(CampaignCommand):
             f"{totals.accepted} of {totals.batches} batches accepted; cost {totals.cost}, "
             f"paid {totals.paid}, to pay {totals.to_pay}, forecast {totals.forecast} {campaign.currency}"
         )
-
-
-def worker_named(pseudonym: str) -> Worker:
-    worker = Worker.objects.filter(pseudonym=pseudonym).first()
-    if worker is None:
-        raise CommandError(f"there is no worker {pseudonym}; workers are named by their pseudonyms")
-    return worker

@@ -10,7 +10,8 @@ from django.core.management.base import CommandError
 from django.urls import reverse
 
 from gtm_hit.crowd.prolific import connect
-from gtm_hit.management.campaign_command import CampaignCommand, campaign_named, manager_named, told
+from gtm_hit.management.campaign_command import CampaignCommand, manager_named, told
+from gtm_hit.management.lookups import campaign_named
 from gtm_hit.models import Campaign
 from gtm_hit.ops.outbox import accounts, studies
 

@@ -4,8 +4,13 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
-from gtm_hit.management.campaigns import campaign_named, qualification_named, worker_named
-from gtm_hit.management.lookups import dataset_named, layer_named
+from gtm_hit.management.lookups import (
+    campaign_named,
+    dataset_named,
+    layer_named,
+    qualification_named,
+    worker_named,
+)
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.qualifications import grants, managing
 from gtm_hit.ops.qualifications.managing import Order, PassMarks

@@ -4,7 +4,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
-from gtm_hit.management.campaigns import campaign_named
+from gtm_hit.management.lookups import campaign_named
 from gtm_hit.models import Campaign
 from gtm_hit.ops.scores import computing, listing, words
 from gtm_hit.ops.scores.suspicion import by_suspicion
