@@ -11,6 +11,7 @@ from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
+from gtm_hit.api.common.comments import comment_or_404, listed
 from gtm_hit.api.common.fields import LARGEST, StrictBooleanField
 from gtm_hit.api.common.refusals import refusal, valid
 from gtm_hit.api.common.staff import (
@@ -25,7 +26,7 @@ from gtm_hit.api.common.staff import (
     dataset_or_404,
     invalid,
 )
-from gtm_hit.models import Assignment, Campaign, Category, Comment
+from gtm_hit.models import Assignment, Campaign, Category
 from gtm_hit.ops.quality.layer_rows import QualityError
 from gtm_hit.ops.review import comments, facts, mending, queue
 from gtm_hit.ops.review.differences import differences
@@ -190,7 +191,7 @@ class ReviewComments(ReviewersView):
             comments.answer(comment_or_404(assignment, answered), caller(request), text)
         else:
             comments.remark(assignment, caller(request), text, comments.Pin(**wanted))
-        return Response({"comments": facts.comments_of(assignment)}, status=201)
+        return listed(assignment, 201)
 
 
 class ReviewComment(ReviewersView):
@@ -204,15 +205,7 @@ class ReviewComment(ReviewersView):
         assignment = assignment_or_404(slug, pk)
         resolved = valid(ResolvedSerializer(data=request.data))["resolved"]
         comments.resolve(comment_or_404(assignment, comment), caller(request), resolved)
-        return Response({"comments": facts.comments_of(assignment)})
-
-
-def comment_or_404(assignment: Assignment, pk: int) -> Comment:
-    rows = Comment.objects.select_related("assignment__batch__dataset", "assignment__worker", "answers")
-    found = rows.filter(assignment=assignment, pk=pk).first()
-    if found is None:
-        raise Http404
-    return found
+        return listed(assignment)
 
 
 class ReviewMend(ReviewersView):
