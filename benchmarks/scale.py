@@ -20,6 +20,8 @@ from typing import Any
 
 import django
 
+from benchmarks.requests import queries_of
+
 PEOPLE = 24
 TIMES = 9
 ROOT = Path(__file__).resolve().parent.parent
@@ -131,17 +133,7 @@ def measure(slug: str, middle: int) -> dict[str, tuple[int, float]]:
 
 
 def timed(calls: list[Any]) -> tuple[int, float]:
-    from django.db import connection
-
-    count = 0
-
-    def counted(execute: Any, *arguments: Any) -> Any:
-        nonlocal count
-        count += 1
-        return execute(*arguments)
-
-    with connection.execute_wrapper(counted):
-        assert calls[0]().status_code == 200
+    count = queries_of(calls[0])
     taken = []
     for call in calls[1:]:
         start = time.perf_counter()
