@@ -10,21 +10,20 @@ from __future__ import annotations
 
 import json
 import os
-import statistics
 import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from datetime import timedelta
 from typing import Any
 
 import django
 
+from benchmarks.requests import Timed, timed
+
 TIMES = 9
 LIMIT_MS = 150
 SIZE = 10
 COPIES = 2
-Timed = tuple[int, float, float]  # queries, milliseconds by the clock, of the processor
 
 
 def prepare(folder: str) -> None:
@@ -164,36 +163,14 @@ def measure(campaign: Any) -> dict[str, Timed]:
     for name, path in addresses(campaign):
         # Buttons are no pages.
         if client.get(path).status_code == 200:
-            found[name] = timed(client, path)
+            found[name] = timed(client, path, TIMES)
     worker = campaign.links.first().worker
     seat = links.seat_token(links.Seat(worker, campaign.dataset, campaign))
-    found["work-home"] = timed(client, reverse("work-home", args=[seat]))
+    found["work-home"] = timed(client, reverse("work-home", args=[seat]), TIMES)
     granting.grant(worker.user, Role.ANNOTATOR, campaign.dataset)
     client.force_login(worker.user)
-    found["my-work"] = timed(client, reverse("my-work"))
+    found["my-work"] = timed(client, reverse("my-work"), TIMES)
     return found
-
-
-def timed(client: Any, path: str) -> Timed:
-    from django.db import connection
-
-    count = 0
-
-    def counted(execute: Any, *arguments: Any) -> Any:
-        nonlocal count
-        count += 1
-        return execute(*arguments)
-
-    with connection.execute_wrapper(counted):
-        answer = client.get(path)
-    assert answer.status_code == 200, (path, answer.status_code)
-    times, work = [], []
-    for _ in range(TIMES):
-        begin, worked = time.perf_counter(), time.process_time()
-        client.get(path)
-        times.append((time.perf_counter() - begin) * 1000)
-        work.append((time.process_time() - worked) * 1000)
-    return count, statistics.median(times), statistics.median(work)
 
 
 def main() -> int:

@@ -6,12 +6,11 @@
 from __future__ import annotations
 
 import os
-import statistics
 import tempfile
-import time
 from decimal import Decimal
 from pathlib import Path
-from typing import Any
+
+from benchmarks.requests import timed
 
 WORKERS, EACH, FRAMES = 200, 5, 10
 
@@ -64,7 +63,6 @@ def build() -> None:
 
 def measure() -> None:
     from django.contrib.auth.models import User
-    from django.db import connection
     from django.test import Client
 
     from gtm_hit.ops.access import granting
@@ -74,25 +72,9 @@ def measure() -> None:
     vera = User.objects.create_user("vera")
     granting.grant(vera, Role.MANAGER)
     client.force_login(vera)
-    asked: list[str] = []
-
-    def noted(execute: Any, sql: str, *rest: Any) -> Any:
-        asked.append(sql)
-        return execute(sql, *rest)
-
     for page in ("pay/", "pay/workers.csv", "platform/"):
-        address = f"/datasets/square/campaigns/autumn/{page}"
-        with connection.execute_wrapper(noted):
-            assert client.get(address).status_code == 200
-        times, work = [], []
-        for _again in range(7):
-            began, worked = time.perf_counter(), time.process_time()
-            client.get(address)
-            times.append(1000 * (time.perf_counter() - began))
-            work.append(1000 * (time.process_time() - worked))
-        middle, busy = statistics.median(times), statistics.median(work)
-        print(f"{page:<16} {middle:6.0f} ms, {busy:4.0f} ms of the processor, {len(asked)} queries")
-        asked.clear()
+        count, middle, busy = timed(client, f"/datasets/square/campaigns/autumn/{page}", 7)
+        print(f"{page:<16} {middle:6.0f} ms, {busy:4.0f} ms of the processor, {count} queries")
 
 
 def main() -> None:

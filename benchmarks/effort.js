@@ -2,72 +2,25 @@
  * A scripted annotator at the real workbench. It sees the truth and decides perfectly; its hands are real events
  * at the real page, and every key press and every click is counted. Clicks miss by a normal error.
  */
-import { Activity } from "/static/saving/activity.js";
-import { Journal } from "/static/saving/journal.js";
-import { Loader } from "/static/saving/loader.js";
-import { Saver } from "/static/saving/saver.js";
-import { History } from "/static/truth/history.js";
-import { withRefill } from "/static/truth/keyframes.js";
-import { Scene } from "/static/truth/scene.js";
-import { Store } from "/static/truth/store.js";
-import { Images } from "/static/views/images.js";
-import { Panes } from "/static/views/panes.js";
 import { Queue } from "/static/workbench/people/queue.js";
-import { buildWorkbench } from "/static/workbench/workbench.js";
+import { Hands } from "./effort_hands.js";
+import { openWorkbench } from "./effort_session.js";
+import { NEAR } from "./effort_steps.js";
 
 const SAME = 0.5; // metres between somebody proposed and the truth
-const NEAR = 0.05; // metres from the truth that are near enough
-const FAR = 10; // positions a step with Shift goes
-const SCREEN = 3; // CSS pixels, standard deviation of a click along each axis
-const IMAGE = 1; // image pixels a picture leaves open, however far one zooms in
-const PATIENCE = 24_000; // actions in one frame after which something is wrong
-
-const panes = new Map(); // view → pane, noted as the page builds them
 
 /** @param {{scene: object, truth: Object<string, number>[], plan: object, seed: number}} job */
-export async function work({ scene: json, truth, plan, seed, proposed }) {
-  const add = Panes.prototype.addExtra;
-  Panes.prototype.addExtra = function noted(extra) {
-    for (const pane of this.all) panes.set(pane.view.index ?? "map", pane);
-    add.call(this, extra);
-  };
-  Element.prototype.setPointerCapture = () => {}; // made-up pointers cannot be captured
-  const session = makeSession(new Scene(json), await Journal.open(null), proposed);
-  buildWorkbench(document.getElementById("workbench"), session, { mode: "assignment", home: "/" });
-  await new Promise((done) => setTimeout(done, 300)); // until the panes know their size
-  const annotator = new Annotator(session, truth, plan, seed);
+export async function work({ scene, truth, plan, seed, proposed }) {
+  const { session, panes } = await openWorkbench(scene, proposed);
+  const annotator = new Annotator(session, new Hands(session, panes, plan, seed), truth, plan);
   await annotator.run();
   return annotator.report();
 }
 
-function makeSession(scene, journal, proposed) {
-  const empty = scene.frames.map(({ number }) => ({
-    number,
-    revision: 0,
-    annotations: [],
-    done: false,
-    nobody: false,
-  }));
-  const api = {
-    ask: async () => proposed,
-    frames: async () => ({ frames: empty }),
-    blob: () => Promise.reject(new Error("no pictures here")),
-  };
-  const store = new Store(
-    scene.frames.map(({ number }) => number),
-    scene.nextPerson,
-  );
-  const loader = new Loader({ api, scene, store });
-  const activity = new Activity();
-  const saver = new Saver({ api, store, journal, activity, practice: true });
-  const history = new History(store, (patch) => withRefill(store, scene, patch));
-  loader.connect(saver, empty);
-  return { api, scene, store, history, saver, loader, journal, images: new Images(api, scene), activity };
-}
-
 class Annotator {
-  constructor({ scene, store }, truth, plan, seed) {
+  constructor({ scene, store }, hands, truth, plan) {
     Object.assign(this, { scene, store, plan });
+    this._hands = hands;
     this._queue = new Queue({ scene, store });
     this._truth = new Map(
       truth.map((people, index) => [
@@ -77,38 +30,32 @@ class Annotator {
     );
     this._number = new Map(); // of the truth's people, in the workbench
     this._who = new Map(); // and back
-    this._random = normal(seed);
-    this._counts = {};
-    this._paints = [];
-    this._spent = 0;
-    // Nobody looks: what waits for the next picture is done only when a row of the list is needed.
-    window.requestAnimationFrame = (paint) => this._paints.push(paint);
   }
 
   report() {
     const persons = [...this._truth.values()].reduce((sum, people) => sum + people.size, 0);
     const wrong = this.store.numbers.flatMap((number) => this._wrongIn(number));
-    return { counts: this._counts, persons, wrong };
+    return { counts: this._hands.counts, persons, wrong };
   }
 
   async run() {
     const { numbers } = this.store;
-    this._pointAt(panes.get("map"));
-    if (this.plan.round) this._key("a");
+    this._hands.pointAtMap();
+    if (this.plan.round) this._hands.key("a");
     const every = this.plan.keyframes ?? 1;
     if (every > 1) {
       for (let index = 0; index < numbers.length; index += every) await this._visit(numbers[index], index > 0);
       await this._visit(numbers[0], true);
     }
     for (let index = 0; index < numbers.length; index += 1) {
-      if (index > 0) await this._go(numbers[index], () => this._key("n"));
+      if (index > 0) await this._go(numbers[index], () => this._hands.key("n"));
       await this._work();
     }
-    this._key("n"); // the last frame is done, too
+    this._hands.key("n"); // the last frame is done, too
   }
 
   async _visit(number, jump) {
-    if (jump) await this._go(number, () => this._clickTimeline(number));
+    if (jump) await this._go(number, () => this._hands.clickTimeline(number));
     await this._work();
   }
 
@@ -138,9 +85,9 @@ class Annotator {
   }
 
   async _work() {
-    this._spent = 0;
+    this._hands.spent = 0;
     if (this.plan.keyframes && this._cameLater().length) {
-      this._key("j");
+      this._hands.key("j");
       await tick();
       await tick();
     }
@@ -150,21 +97,21 @@ class Annotator {
     for (;;) {
       const waiting = this._yellow();
       if (!waiting.length) return;
-      this._key("f");
+      this._hands.key("f");
       this._correctSelected();
     }
   }
 
   /** All right ones by one key; whoever of them is not right, or nobody, is gone to by a click on the list. */
   _acceptProposed() {
-    this._key("o");
+    this._hands.key("o");
     const accepted = [...this.store.people().values()].filter(({ origin }) => origin === "proposed");
     for (const one of accepted) this._recognise(one);
     for (const { person } of accepted) {
       const wrong = !this._who.has(person) || !this._here(person);
       if (!wrong && this._isNear(person)) continue;
-      this._clickRow(person);
-      if (wrong) this._key("Backspace");
+      this._hands.clickRow(person);
+      if (wrong) this._hands.key("Backspace");
       else while (!this._isNear(person)) this._improve(person);
     }
   }
@@ -185,10 +132,10 @@ class Annotator {
   /** One after the other without any of the round's help: select, move, validate. */
   _correctSelected() {
     const { person } = this.store.selected();
-    if (!this._who.has(person) || !this._here(person)) return this._key("Backspace");
-    if (this.plan.zoom && [...panes.values()].every(({ fitted }) => fitted)) this._key("z");
+    if (!this._who.has(person) || !this._here(person)) return this._hands.key("Backspace");
+    if (this.plan.zoom && this._hands.seesAll) this._hands.key("z");
     while (!this._isNear(person)) this._improve(person);
-    if (this.store.person(person).state === "carried") this._key("e");
+    if (this.store.person(person).state === "carried") this._hands.key("e");
   }
 
   _placeAndCorrect(id) {
@@ -201,10 +148,10 @@ class Annotator {
     for (;;) {
       const one = this.store.selected();
       if (!one) {
-        if (this._yellow().length) this._key("f");
+        if (this._yellow().length) this._hands.key("f");
         else if (this._missing().length) this._place(this._missing()[0]);
         else return;
-      } else if (!this._here(one.person)) this._key("Backspace");
+      } else if (!this._here(one.person)) this._hands.key("Backspace");
       else if (!this._isNear(one.person)) this._putRight(one.person);
       else if (!this._goOn(one)) return;
     }
@@ -213,7 +160,7 @@ class Annotator {
   /** A right click goes on at once; whoever was missed is fetched back. */
   _putRight(person) {
     const clicks = this._improve(person);
-    if (clicks && !this._isNear(person) && this.store.selection !== person) this._key("b");
+    if (clicks && !this._isNear(person) && this.store.selection !== person) this._hands.key("b");
   }
 
   /** @returns {boolean} whether there is anything left to do in this frame */
@@ -224,29 +171,27 @@ class Annotator {
     const right = this._yellow().length - wrong.length;
     if (!right && !wrong.length && !this._missing().length) return false;
     const next = this._queue.next(one.person);
-    if (!this.plan.skip || (wrong.length && one.state === "carried" && wrong.includes(next))) this._key("Enter");
-    else if (wrong.length) this._clickRow(wrong[0].person);
-    else if (right) this._key("Enter", { shiftKey: true });
-    else this._key("Enter");
+    if (!this.plan.skip || (wrong.length && one.state === "carried" && wrong.includes(next))) this._hands.key("Enter");
+    else if (wrong.length) this._hands.clickRow(wrong[0].person);
+    else if (right) this._hands.key("Enter", { shiftKey: true });
+    else this._hands.key("Enter");
     return true;
   }
 
   /** By click or by arrow, whichever will be over sooner. @returns {boolean} whether it was a click */
   _improve(person) {
     const truth = this._here(person);
-    const press = this._arrow(this.store.person(person).position, truth);
-    const view = this.plan.clicks && this._bestView(truth);
+    const press = this._hands.arrow(this.store.person(person).position, truth);
+    const view = this.plan.clicks && this._hands.bestView(truth);
     // One by one a click goes on by itself, unless it has to be mended; after arrow keys Enter goes on.
     const [byKeys, byClicks] = this.plan.round ? [press.cost + 1, 2 * view?.cost - 1] : [press.cost, view?.cost];
     if (!view || byKeys <= byClicks) {
-      this._key(press.key, { shiftKey: press.far });
+      this._hands.key(press.key, { shiftKey: press.far });
       return false;
     }
-    this._rightClick(view, truth);
+    this._hands.rightClick(view, truth);
     return true;
   }
-
-  // What there is to see
 
   _yellow() {
     return [...this.store.people().values()]
@@ -291,174 +236,13 @@ class Annotator {
     ];
   }
 
-  // Hands
-
-  _count(kind) {
-    this._counts[kind] = (this._counts[kind] ?? 0) + 1;
-    this._spent += 1;
-    if (this._spent > PATIENCE) throw new Error(`stuck in frame ${this.store.current}`);
-  }
-
-  _key(key, modifiers = {}) {
-    this._count(key.startsWith("Arrow") ? "arrow keys" : "other keys");
-    const init = { key, bubbles: true, cancelable: true, ...modifiers };
-    document.body.dispatchEvent(new KeyboardEvent("keydown", init));
-    document.body.dispatchEvent(new KeyboardEvent("keyup", init));
-  }
-
-  _pointAt(pane) {
-    pane.element.dispatchEvent(new PointerEvent("pointerenter", {}));
-  }
-
   _place(id) {
     const position = this._truth.get(this.store.current).get(id);
     const before = this.store.people().size;
-    while (this.store.people().size === before) {
-      this._count("clicks");
-      const { pane, sigma } = this._bestView(position) ?? { pane: panes.get("map"), sigma: SCREEN };
-      const init = {
-        ...this._aim(pane, position, sigma),
-        button: 0,
-        pointerId: 1,
-        shiftKey: true,
-        bubbles: true,
-        cancelable: true,
-      };
-      pane.element.dispatchEvent(new PointerEvent("pointerdown", init));
-      pane.element.dispatchEvent(new PointerEvent("pointerup", init));
-      this._pointAt(panes.get("map"));
-    }
+    while (this.store.people().size === before) this._hands.place(position);
     this._number.set(id, this.store.selection);
     this._who.set(this.store.selection, id);
   }
-
-  _rightClick({ pane, sigma }, position) {
-    this._count("clicks");
-    pane.element.dispatchEvent(
-      new MouseEvent("contextmenu", {
-        ...this._aim(pane, position, sigma),
-        button: 2,
-        bubbles: true,
-        cancelable: true,
-      }),
-    );
-  }
-
-  _clickRow(person) {
-    this._count("clicks");
-    for (const paint of this._paints.splice(0)) paint(performance.now());
-    [...document.querySelectorAll(".people li")]
-      .find((row) => row.querySelector(".number").textContent === String(person))
-      .click();
-  }
-
-  _clickTimeline(number) {
-    this._count("clicks");
-    const { left, top, width, height } = document
-      .querySelector(`.timeline-frame[data-number="${number}"]`)
-      .getBoundingClientRect();
-    const init = {
-      clientX: left + width / 2,
-      clientY: top + height / 2,
-      button: 0,
-      pointerId: 1,
-      bubbles: true,
-      cancelable: true,
-    };
-    const frames = document.querySelector(".timeline-frames");
-    for (const type of ["pointerdown", "pointerup"]) frames.dispatchEvent(new PointerEvent(type, init));
-  }
-
-  _aim(pane, position, sigma) {
-    const { x, y } = onPane(pane, this.scene.metres(position));
-    const bounds = pane.element.getBoundingClientRect();
-    return { clientX: bounds.left + x + sigma * this._random(), clientY: bounds.top + y + sigma * this._random() };
-  }
-
-  /** The pane in which a click lands nearest, and how many clicks it takes until one is near enough. */
-  _bestView(position) {
-    const ground = this.scene.metres(position);
-    let best = null;
-    for (const pane of panes.values()) {
-      if (pane.view.index === null) continue;
-      const spread = this._spread(pane, ground);
-      if (spread && (!best || spread.variance < best.variance)) best = { pane, ...spread };
-    }
-    if (!best) return null;
-    // Rayleigh's distribution, as if the error were the same along both axes of the ground
-    return { ...best, cost: 1 / (1 - Math.exp(-(NEAR ** 2) / best.variance)) };
-  }
-
-  /** Where clicks land on the ground: the sum of their variances, m²; null where the feet are not to be seen. */
-  _spread(pane, ground) {
-    const seen = pane.view.point(ground);
-    const { width, height } = pane.view.size;
-    if (!seen || seen.x < 0 || seen.y < 0 || seen.x >= width || seen.y >= height) return null;
-    const at = pane.transform.toPane(seen.x, seen.y);
-    if (at.x < 2 || at.y < 2 || at.x > pane.room.width - 2 || at.y > pane.room.height - 2) return null;
-    const [right, up] = [
-      onPane(pane, { x: ground.x + 0.01, y: ground.y }),
-      onPane(pane, { x: ground.x, y: ground.y + 0.01 }),
-    ];
-    const [a, b, c, d] = [right.x - at.x, up.x - at.x, right.y - at.y, up.y - at.y].map((pixels) => pixels / 0.01);
-    const sigma = Math.hypot(SCREEN, (this.plan.imagePixels ?? IMAGE) * pane.transform.scale);
-    return { sigma, variance: (sigma ** 2 * (a * a + b * b + c * c + d * d)) / (a * d - b * c) ** 2 };
-  }
-
-  /** By somebody else: an arrow key goes past him, and never onto his position. */
-  _isOccupied(position) {
-    return Boolean(this.store.occupant(position, this.store.selection));
-  }
-
-  /** The next press on the shortest way, and how many there are. */
-  _arrow(from, to) {
-    const { columns, rows } = this.scene.grid;
-    const [x0, y0] = [from % columns, Math.floor(from / columns)];
-    const [dx, dy] = [(to % columns) - x0, Math.floor(to / columns) - y0];
-    const inside = {
-      x: (cells) => x0 + cells >= 0 && x0 + cells < columns,
-      y: (cells) => y0 + cells >= 0 && y0 + cells < rows,
-    };
-    const reach = Math.floor(NEAR / this.scene.grid.step + 1e-9);
-    let best = { cost: Infinity };
-    for (let i = -reach; i <= reach; i += 1) {
-      for (let j = -reach; j <= reach; j += 1) {
-        if (Math.hypot(i, j) > reach || this._isOccupied(to - i - j * columns)) continue;
-        const [x, y] = [presses(dx - i, this.plan.far, inside.x), presses(dy - j, this.plan.far, inside.y)];
-        if (x.cost + y.cost < best.cost) best = { cost: x.cost + y.cost, x, y };
-      }
-    }
-    const along = best.x.cost ? "x" : "y";
-    const { sign, far } = best[along];
-    const axes = panes.get("map").view.axes();
-    const wanted = along === "x" ? { columns: sign, rows: 0 } : { columns: 0, rows: sign };
-    const name = Object.keys(axes).find(
-      (one) => axes[one].columns === wanted.columns && axes[one].rows === wanted.rows,
-    );
-    return {
-      cost: best.cost,
-      far,
-      key: { left: "ArrowLeft", right: "ArrowRight", up: "ArrowUp", down: "ArrowDown" }[name],
-    };
-  }
-}
-
-/** Presses along one axis, coarse ones first: {cost, sign and far of the next one}. */
-function presses(cells, mayFar, inside) {
-  const far = Math.trunc(cells / FAR);
-  const coarse = mayFar ? [0, far, far + Math.sign(cells)].filter((steps) => inside(FAR * steps)) : [0];
-  const options = coarse.map((steps) => ({
-    steps,
-    rest: cells - FAR * steps,
-    cost: Math.abs(steps) + Math.abs(cells - FAR * steps),
-  }));
-  const best = options.reduce((one, other) => (other.cost < one.cost ? other : one));
-  return { cost: best.cost, far: best.steps !== 0, sign: Math.sign(best.steps || best.rest) };
-}
-
-function onPane(pane, ground) {
-  const { x, y } = pane.view.point(ground);
-  return pane.transform.toPane(x, y);
 }
 
 function tick() {
@@ -467,16 +251,4 @@ function tick() {
     port1.onmessage = done;
     port2.postMessage(null);
   });
-}
-
-/** Normal numbers out of a seed (mulberry32, Box and Muller). */
-function normal(seed) {
-  let state = seed >>> 0;
-  const uniform = () => {
-    state = (state + 0x6d2b79f5) >>> 0;
-    let mixed = Math.imul(state ^ (state >>> 15), state | 1);
-    mixed ^= mixed + Math.imul(mixed ^ (mixed >>> 7), mixed | 61);
-    return ((mixed ^ (mixed >>> 14)) >>> 0) / 4294967296;
-  };
-  return () => Math.sqrt(-2 * Math.log(1 - uniform())) * Math.cos(2 * Math.PI * uniform());
 }

@@ -20,6 +20,8 @@ from typing import Any
 
 import django
 
+from benchmarks.requests import queries_of
+
 PEOPLE = 24
 TIMES = 9
 ROOT = Path(__file__).resolve().parent.parent
@@ -38,15 +40,27 @@ def build(slug: str, frames: int) -> None:
     """Rows only: images are addressed, and nobody opens them here."""
     import numpy as np
 
-    from gtm_hit.formats.calibration.cameras_json import load_cameras
-    from gtm_hit.models import Annotation, Camera, Dataset, Frame, Image, Layer, LayerFrame
+    from gtm_hit.models import Dataset, Layer
     from gtm_hit.ops.ground import coverage
     from gtm_hit.ops.work import batches
 
     dataset = Dataset.objects.create(slug=slug, name=slug)
-    cameras = [
-        Camera.objects.create(
-            dataset=dataset,
+    make_cameras(dataset)
+    layer = Layer.objects.create(
+        dataset=dataset, name="truth", kind=Layer.Kind.STAFF, last_person=frames + PEOPLE
+    )
+    positions = np.random.default_rng(1).integers(0, dataset.grid.count, (frames, PEOPLE)).tolist()
+    for first in range(0, frames, 2000):
+        fill(layer, range(first, min(first + 2000, frames)), positions)
+    batches.make_batches(dataset)
+    coverage.table(dataset)
+
+
+def make_cameras(dataset: Any) -> None:
+    from gtm_hit.formats.calibration.cameras_json import load_cameras
+
+    for camera in load_cameras(ROOT / "fixtures" / "wildtrack_cameras.json"):
+        dataset.cameras.create(
             index=camera.index,
             name=camera.name,
             width=camera.width,
@@ -55,36 +69,33 @@ def build(slug: str, frames: int) -> None:
             rvec=camera.rvec.tolist(),
             tvec=camera.tvec.tolist(),
         )
-        for camera in load_cameras(ROOT / "fixtures" / "wildtrack_cameras.json")
-    ]
-    layer = Layer.objects.create(
-        dataset=dataset, name="truth", kind=Layer.Kind.STAFF, last_person=frames + PEOPLE
+
+
+def fill(layer: Any, numbers: range, positions: list[list[int]]) -> None:
+    """Frames with their images and people."""
+    from gtm_hit.models import Annotation, Frame, Image, LayerFrame
+
+    cameras = list(layer.dataset.cameras.order_by("index"))
+    rows = Frame.objects.bulk_create(Frame(dataset=layer.dataset, number=5 * number) for number in numbers)
+    LayerFrame.objects.bulk_create(LayerFrame(layer=layer, frame=row, revision=1) for row in rows)
+    Image.objects.bulk_create(
+        Image(
+            frame=row,
+            camera=camera,
+            source_digest="0" * 64,
+            light_digest=f"{row.pk:056x}{camera.pk:07x}1",
+            full_digest=f"{row.pk:056x}{camera.pk:07x}2",
+            light_bytes=1,
+            full_bytes=1,
+        )
+        for row in rows
+        for camera in cameras
     )
-    positions = np.random.default_rng(1).integers(0, dataset.grid.count, (frames, PEOPLE)).tolist()
-    for first in range(0, frames, 2000):
-        numbers = range(first, min(first + 2000, frames))
-        rows = Frame.objects.bulk_create(Frame(dataset=dataset, number=5 * number) for number in numbers)
-        LayerFrame.objects.bulk_create(LayerFrame(layer=layer, frame=row, revision=1) for row in rows)
-        Image.objects.bulk_create(
-            Image(
-                frame=row,
-                camera=camera,
-                source_digest="0" * 64,
-                light_digest=f"{row.pk:056x}{camera.pk:07x}1",
-                full_digest=f"{row.pk:056x}{camera.pk:07x}2",
-                light_bytes=1,
-                full_bytes=1,
-            )
-            for row in rows
-            for camera in cameras
-        )
-        Annotation.objects.bulk_create(
-            Annotation(layer=layer, frame=row, person=number // 40 + person, position=position)
-            for row, number in zip(rows, numbers, strict=True)
-            for person, position in enumerate(positions[number])
-        )
-    batches.make_batches(dataset)
-    coverage.table(dataset)
+    Annotation.objects.bulk_create(
+        Annotation(layer=layer, frame=row, person=number // 40 + person, position=position)
+        for row, number in zip(rows, numbers, strict=True)
+        for person, position in enumerate(positions[number])
+    )
 
 
 def measure(slug: str, middle: int) -> dict[str, tuple[int, float]]:
@@ -122,17 +133,7 @@ def measure(slug: str, middle: int) -> dict[str, tuple[int, float]]:
 
 
 def timed(calls: list[Any]) -> tuple[int, float]:
-    from django.db import connection
-
-    count = 0
-
-    def counted(execute: Any, *arguments: Any) -> Any:
-        nonlocal count
-        count += 1
-        return execute(*arguments)
-
-    with connection.execute_wrapper(counted):
-        assert calls[0]().status_code == 200
+    count = queries_of(calls[0])
     taken = []
     for call in calls[1:]:
         start = time.perf_counter()

@@ -1,15 +1,20 @@
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck
+from hypothesis import settings as hypothesis_settings
+
+from tests.prolific_server import Prolific, prolific_server
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 
 # Properties are about results; how long an example takes depends on what else the machine is doing.
-settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.load_profile("untimed")
+hypothesis_settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+hypothesis_settings.load_profile("untimed")
 
 
 @pytest.fixture(scope="session")
@@ -19,3 +24,12 @@ def shared_data() -> Path:
     if not folder.is_dir():
         pytest.skip("reference data not present: ../shared/data")
     return folder
+
+
+@pytest.fixture
+def prolific(settings: Any) -> Iterator[Prolific]:
+    """A Prolific of the test's own, where ada takes part as s1."""
+    with prolific_server() as server:
+        settings.PROLIFIC_ADDRESSES = [server.base]
+        server.add("s1", "ada")
+        yield server

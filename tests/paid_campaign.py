@@ -17,7 +17,8 @@ from gtm_hit.models import (
     PlatformAccount,
     Worker,
 )
-from tests.work_scene import make_dataset
+from tests.prolific_server import TOKEN
+from tests.work_scene import make_dataset, make_worker
 
 State = Assignment.State
 
@@ -32,6 +33,13 @@ def make_campaign(dataset: Dataset | None = None, batches: int = 6, **values: An
     for number in range(1, batches + 1):
         batch = Batch.objects.create(dataset=dataset, campaign=campaign, number=number)
         batch.frames.set(frames[10 * (number - 1) : 10 * number])
+    return campaign
+
+
+def prolific_campaign(**values: Any) -> Campaign:
+    """With workers of the stand-in for Prolific, and the key to it."""
+    campaign = make_campaign(platform=Campaign.Platform.PROLIFIC, **values)
+    make_account(campaign, token=TOKEN)
     return campaign
 
 
@@ -63,6 +71,13 @@ def assign(
         submitted_at=None if state in {State.LEASED, State.EXPIRED} else now,
         submission=submission,
     )
+
+
+def accepted_work(campaign: Campaign) -> Worker:
+    """Ada's: a batch of half an hour, accepted, and nobody was told."""
+    ada = make_worker("ada", "prolific")
+    assign(campaign, ada, State.ACCEPTED, minutes=30, submission="s1")
+    return ada
 
 
 def become(assignment: Assignment, state: str) -> Assignment:

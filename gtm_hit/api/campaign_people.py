@@ -12,9 +12,9 @@ from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api.campaigns import CampaignView, campaign_or_404
+from gtm_hit.api.common.campaigns import campaign_or_404
 from gtm_hit.api.common.refusals import valid
-from gtm_hit.api.common.staff import READS, WRITES, Pages, answers, caller, invalid
+from gtm_hit.api.common.staff import READS, WRITES, ManagersView, Pages, answers, caller, invalid
 from gtm_hit.crowd.platforms import platform_of
 from gtm_hit.models import ApiToken, Campaign, CampaignLink, Worker
 from gtm_hit.ops.campaigns import links, overview, seats, standing
@@ -54,7 +54,7 @@ class LinkDeedSerializer(serializers.Serializer[Any]):
     deed = serializers.ChoiceField(choices=["revoke", "rotate"])
 
 
-class CampaignLinks(CampaignView):
+class CampaignLinks(ManagersView):
     # A link lets workers in, and that is more than reading.
     read_scope = ApiToken.Scope.WORK
 
@@ -87,7 +87,7 @@ class CampaignLinks(CampaignView):
         return Response(LinkShape(made, context={"request": request}).data, status=201)
 
 
-class OneCampaignLink(CampaignView):
+class OneCampaignLink(ManagersView):
     @extend_schema(
         operation_id="change_campaign_link",
         summary="Revoke a link, or give it another address",
@@ -131,7 +131,7 @@ class StandingSerializer(serializers.Serializer[Any]):
     assignment = serializers.IntegerField(min_value=1, required=False, help_text="for revoke_link")
 
 
-class CampaignWorkers(CampaignView):
+class CampaignWorkers(ManagersView):
     @extend_schema(
         operation_id="campaign_workers",
         summary="A campaign's workers by pseudonym, the latest at work first",
@@ -145,7 +145,7 @@ class CampaignWorkers(CampaignView):
         return pages.get_paginated_response(WorkerShape(rows, many=True).data)
 
 
-class OneCampaignWorker(CampaignView):
+class OneCampaignWorker(ManagersView):
     @extend_schema(
         operation_id="decide_campaign_worker",
         summary="Invite or block a worker, or end the links that lead to their work",

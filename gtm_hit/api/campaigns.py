@@ -5,25 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from django.http import Http404
 from drf_spectacular.utils import OpenApiExample, extend_schema
 from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
+from gtm_hit.api.common.campaigns import campaign_or_404
 from gtm_hit.api.common.refusals import refusal, valid
 from gtm_hit.api.common.staff import (
     READS,
     WRITES,
     Conflict,
-    StaffView,
+    ManagersView,
     answers,
     caller,
     dataset_or_404,
     invalid,
 )
-from gtm_hit.models import ApiToken, Campaign
-from gtm_hit.ops.access.roles import Role
+from gtm_hit.models import Campaign
 from gtm_hit.ops.campaigns import changes, editing, overview, states
 from gtm_hit.ops.campaigns.course import course
 from gtm_hit.ops.campaigns.errors import CampaignError
@@ -60,21 +59,7 @@ class StepSerializer(serializers.Serializer[Any]):
     step = serializers.ChoiceField(choices=list(states.STEPS))
 
 
-def campaign_or_404(slug: str, name: str) -> Campaign:
-    found = None
-    if "\x00" not in name:
-        found = Campaign.objects.select_related("dataset").filter(dataset__slug=slug, name=name).first()
-    if found is None:
-        raise Http404
-    return found
-
-
-class CampaignView(StaffView):
-    read_role = write_role = Role.MANAGER
-    write_scope = ApiToken.Scope.WORK
-
-
-class Campaigns(CampaignView):
+class Campaigns(ManagersView):
     @extend_schema(
         operation_id="campaigns",
         summary="Campaigns of a dataset, the newest first",
@@ -121,7 +106,7 @@ def read(data: Any, shape: type[CampaignSerializer], **options: Any) -> Mapping[
     return wanted
 
 
-class OneCampaign(CampaignView):
+class OneCampaign(ManagersView):
     @extend_schema(
         operation_id="campaign",
         summary="One campaign's rules",
@@ -146,7 +131,7 @@ class OneCampaign(CampaignView):
         return Response(CampaignSerializer(changed).data)
 
 
-class CampaignStep(CampaignView):
+class CampaignStep(ManagersView):
     @extend_schema(
         operation_id="campaign_step",
         summary="Open, pause or close a campaign",
@@ -163,7 +148,7 @@ class CampaignStep(CampaignView):
             raise Conflict(str(error)) from error
 
 
-class CampaignCourse(CampaignView):
+class CampaignCourse(ManagersView):
     @extend_schema(
         operation_id="campaign_course",
         summary="How a campaign goes: batches by state, forecast, cost",

@@ -5,17 +5,16 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from django.http import Http404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
+from gtm_hit.api.common.campaigns import campaign_or_404
 from gtm_hit.api.common.fields import LARGEST
 from gtm_hit.api.common.refusals import valid
-from gtm_hit.api.common.staff import READS, WRITES, StaffView, answers, invalid, layer_named
-from gtm_hit.models import ApiToken, Campaign, PlantedFault, Planting
-from gtm_hit.ops.access.roles import Role
+from gtm_hit.api.common.staff import READS, WRITES, ManagersView, answers, invalid, layer_named
+from gtm_hit.models import Campaign, PlantedFault, Planting
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.gold import frames, planting, results
 from gtm_hit.ops.qualifications import managing
@@ -69,13 +68,7 @@ class RequireSerializer(serializers.Serializer[Any]):
     names = serializers.ListField(child=serializers.CharField(max_length=120), max_length=50)
 
 
-class CampaignView(StaffView):
-    read_role = Role.MANAGER
-    write_role = Role.MANAGER
-    write_scope = ApiToken.Scope.WORK
-
-
-class Gold(CampaignView):
+class Gold(ManagersView):
     @extend_schema(operation_id="gold", summary="Gold frames", responses=answers(200, GoldShape, READS))
     def get(self, request: Request, slug: str, name: str) -> Response:
         return self.answer(campaign_or_404(slug, name))
@@ -103,7 +96,7 @@ class Gold(CampaignView):
         return Response({**counted, "numbers": numbers} | {"frames": len(numbers)})
 
 
-class PlantedFaults(CampaignView):
+class PlantedFaults(ManagersView):
     @extend_schema(
         operation_id="planted_faults",
         summary="Which faults are planted, and what became of them",
@@ -151,7 +144,7 @@ class PlantedFaults(CampaignView):
         return Response({"settings": settled, "results": kinds})
 
 
-class RequiredQualifications(CampaignView):
+class RequiredQualifications(ManagersView):
     @extend_schema(
         operation_id="required_qualifications",
         summary="Qualifications a campaign asks for",
@@ -178,12 +171,3 @@ class RequiredQualifications(CampaignView):
     def answer(self, campaign: Campaign) -> Response:
         asked = campaign.required_qualifications.order_by("qualification__name")
         return Response({"names": list(asked.values_list("qualification__name", flat=True))})
-
-
-def campaign_or_404(slug: str, name: str) -> Campaign:
-    found = None
-    if "\x00" not in name:
-        found = Campaign.objects.filter(dataset__slug=slug, name=name).select_related("dataset").first()
-    if found is None:
-        raise Http404
-    return found

@@ -16,10 +16,9 @@ from rest_framework.response import Response
 from gtm_hit.api.common.campaigns import ACTS, READS_REFUSED, campaign_or_404, refusals
 from gtm_hit.api.common.fields import StrictBooleanField
 from gtm_hit.api.common.refusals import valid
-from gtm_hit.api.common.staff import ASKS, Pages, StaffView, answers, asked, caller
+from gtm_hit.api.common.staff import ASKS, ManagersView, Pages, answers, asked, caller
 from gtm_hit.api.jobs import Download, JobShape, started
-from gtm_hit.models import ApiToken, Campaign, OutboxRow
-from gtm_hit.ops.access.roles import Role
+from gtm_hit.models import Campaign, OutboxRow
 from gtm_hit.ops.outbox import accounts, handover, overview, planning, return_requests, rows, sending
 
 LARGEST_ROW = 2**63 - 1
@@ -88,12 +87,7 @@ class SubmissionsShape(serializers.Serializer[Any]):
     news = serializers.IntegerField(help_text="submissions whose status was not known")
 
 
-class OutboxView(StaffView):
-    read_role = write_role = Role.MANAGER
-    write_scope = ApiToken.Scope.WORK
-
-
-class Outbox(OutboxView, ListAPIView[OutboxRow]):
+class Outbox(ManagersView, ListAPIView[OutboxRow]):
     queryset = OutboxRow.objects.none()
     serializer_class = RowShape
     pagination_class = Pages
@@ -114,7 +108,7 @@ class Outbox(OutboxView, ListAPIView[OutboxRow]):
         return super().get(request, *args, **kwargs)
 
 
-class Payouts(OutboxView):
+class Payouts(ManagersView):
     @extend_schema(
         operation_id="plan_payouts",
         summary="Plan to pay through the platform what is to be paid",
@@ -132,7 +126,7 @@ class Payouts(OutboxView):
         return Response(PlannedShape(found, many=True).data)
 
 
-class ReturnRequests(OutboxView):
+class ReturnRequests(ManagersView):
     @extend_schema(
         operation_id="request_return",
         summary="Plan to ask a worker to give a submission back, unpaid and without a rejection",
@@ -147,7 +141,7 @@ class ReturnRequests(OutboxView):
         return Response(RowShape(row).data)
 
 
-class Send(OutboxView):
+class Send(ManagersView):
     @extend_schema(
         operation_id="send_outbox",
         summary="Send what is planned, and ask about what got no answer",
@@ -161,7 +155,7 @@ class Send(OutboxView):
         return started(sending.start(campaign, caller(request)))
 
 
-class OneRow(OutboxView):
+class OneRow(ManagersView):
     @extend_schema(
         operation_id="decide_outbox_row",
         summary="Decide about one row",
@@ -179,7 +173,7 @@ class OneRow(OutboxView):
 FILE = OpenApiParameter("what", str, OpenApiParameter.PATH, enum=list(handover.KINDS))
 
 
-class HandoverFile(Download, OutboxView):
+class HandoverFile(Download, ManagersView):
     @extend_schema(
         operation_id="handover_file",
         summary="What is planned, as a file for the platform",
@@ -197,7 +191,7 @@ class HandoverFile(Download, OutboxView):
         return HttpResponse(made.text, content_type="text/csv; charset=utf-8", headers=headers)
 
 
-class HandoverDone(OutboxView):
+class HandoverDone(ManagersView):
     @extend_schema(
         operation_id="handover_done",
         summary="Say that a file was carried out at the platform",
@@ -214,7 +208,7 @@ class HandoverDone(OutboxView):
             raise Http404 from None
 
 
-class Submissions(OutboxView):
+class Submissions(ManagersView):
     @extend_schema(
         operation_id="take_in_submissions",
         summary="Take in Prolific's list of submissions",

@@ -15,10 +15,9 @@ from rest_framework.response import Response
 
 from gtm_hit.api.common.campaigns import ACTS, campaign_or_404, refusals
 from gtm_hit.api.common.refusals import valid
-from gtm_hit.api.common.staff import READS, Pages, StaffView, answers, caller, invalid
+from gtm_hit.api.common.staff import READS, ManagersView, Pages, answers, caller, invalid
 from gtm_hit.api.jobs import Download
-from gtm_hit.models import ApiToken, Campaign, MoneyEntry
-from gtm_hit.ops.access.roles import Role
+from gtm_hit.models import Campaign, MoneyEntry
 from gtm_hit.ops.pay import csv_files, ledger, table
 
 
@@ -96,12 +95,7 @@ class TakeBackSerializer(serializers.Serializer[Any]):
     note = serializers.CharField(max_length=300, help_text="why")
 
 
-class PayView(StaffView):
-    read_role = write_role = Role.MANAGER
-    write_scope = ApiToken.Scope.WORK
-
-
-class Pay(PayView):
+class Pay(ManagersView):
     @extend_schema(
         operation_id="pay",
         summary="Who earned what, what an hour came to, what is to be paid",
@@ -114,7 +108,7 @@ class Pay(PayView):
         return Response(PayShape(shown).data)
 
 
-class Bonuses(PayView):
+class Bonuses(ManagersView):
     @extend_schema(
         operation_id="approve_bonuses",
         summary="Approve proposed bonuses, or one of another amount",
@@ -130,7 +124,7 @@ class Bonuses(PayView):
         return Response(EntryShape(added, many=True).data)
 
 
-class Payments(PayView):
+class Payments(ManagersView):
     @extend_schema(
         operation_id="mark_paid",
         summary="Say that a worker was paid by other ways",
@@ -149,7 +143,7 @@ class Payments(PayView):
         return Response(EntryShape(entry).data)
 
 
-class Ledger(PayView, ListAPIView[MoneyEntry]):
+class Ledger(ManagersView, ListAPIView[MoneyEntry]):
     queryset = MoneyEntry.objects.none()
     serializer_class = EntryShape
     pagination_class = Pages
@@ -166,7 +160,7 @@ class Ledger(PayView, ListAPIView[MoneyEntry]):
         return super().get(request, *args, **kwargs)
 
 
-class TakeBack(PayView):
+class TakeBack(ManagersView):
     @extend_schema(
         operation_id="take_back",
         summary="Take a bonus or a payment by hand back, by a line of its own",
@@ -182,7 +176,7 @@ class TakeBack(PayView):
         return Response(EntryShape(back).data)
 
 
-class PayTable(Download, PayView):
+class PayTable(Download, ManagersView):
     @extend_schema(
         operation_id="pay_table",
         summary="Pay by worker, or every movement, as CSV",

@@ -12,10 +12,9 @@ from rest_framework.response import Response
 
 from gtm_hit.api.common.campaigns import ACTS, ASKS_PLATFORM, campaign_or_404, refusals
 from gtm_hit.api.common.refusals import valid
-from gtm_hit.api.common.staff import READS, StaffView, answers, caller
+from gtm_hit.api.common.staff import READS, ManagersView, answers, caller
 from gtm_hit.crowd.prolific import connect
-from gtm_hit.models import ApiToken, PlatformAccount
-from gtm_hit.ops.access.roles import Role
+from gtm_hit.models import PlatformAccount
 from gtm_hit.ops.outbox import accounts, studies
 from gtm_hit.ops.outbox.platform import StudyDraft
 
@@ -54,12 +53,7 @@ class ChangeSerializer(serializers.Serializer[Any]):
     action = serializers.ChoiceField(choices=[*studies.ACTIONS, "look"])
 
 
-class PlatformView(StaffView):
-    read_role = write_role = Role.MANAGER
-    write_scope = ApiToken.Scope.WORK
-
-
-class Account(PlatformView):
+class Account(ManagersView):
     @extend_schema(
         operation_id="platform_account",
         summary="How a campaign's platform is reached, without any key",
@@ -85,7 +79,7 @@ class MessagesSerializer(serializers.Serializer[Any]):
     workspace = serializers.CharField(max_length=64)
 
 
-class Messages(PlatformView):
+class Messages(ManagersView):
     @extend_schema(
         operation_id="have_messages_sent",
         summary="Have the platform send its messages to this server",
@@ -101,7 +95,7 @@ class Messages(PlatformView):
             return shown(studies.have_messages_sent(campaign, platform, workspace, target, by))
 
 
-class DraftStudy(PlatformView):
+class DraftStudy(ManagersView):
     @extend_schema(
         operation_id="draft_study",
         summary="Draft a study; nobody sees it and it costs nothing",
@@ -115,7 +109,7 @@ class DraftStudy(PlatformView):
             return shown(studies.draft(campaign, connect(campaign), wanted, caller(request)))
 
 
-class ChangeStudy(PlatformView):
+class ChangeStudy(ManagersView):
     @extend_schema(
         operation_id="change_study",
         summary="Publish, pause, resume or stop the study, or look how it stands",

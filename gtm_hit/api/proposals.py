@@ -16,6 +16,7 @@ from gtm_hit.api.common.staff import (
     ASKS,
     READS,
     WRITES,
+    ReviewersView,
     StaffView,
     answers,
     asked,
@@ -136,10 +137,12 @@ def run_or_404(dataset: Dataset, pk: int) -> ProposalRun:
     return found
 
 
-class Runs(StaffView):
-    write_scope = ApiToken.Scope.WORK
+class RunsView(StaffView):
     write_role = Role.MAINTAINER
+    write_scope = ApiToken.Scope.WORK
 
+
+class Runs(RunsView):
     @extend_schema(
         operation_id="proposal_runs",
         summary="Runs that propose people, the newest first",
@@ -173,10 +176,7 @@ class Runs(StaffView):
             raise invalid("", error) from error
 
 
-class OneRun(StaffView):
-    write_scope = ApiToken.Scope.WORK
-    write_role = Role.MAINTAINER
-
+class OneRun(RunsView):
     @extend_schema(
         operation_id="use_proposals",
         summary="Show a run's people to annotators, or nobody's",
@@ -202,10 +202,7 @@ class OneRun(StaffView):
         return Response(status=204)
 
 
-class RunLayer(StaffView):
-    write_scope = ApiToken.Scope.WORK
-    write_role = Role.MAINTAINER
-
+class RunLayer(RunsView):
     @extend_schema(
         operation_id="make_proposal_layer",
         summary="Make a layer of a run, to be compared and exported",
@@ -222,11 +219,7 @@ class RunLayer(StaffView):
         return Response({"layer": made.name})
 
 
-class MissingPeople(StaffView):
-    read_role = Role.REVIEWER
-    write_role = Role.REVIEWER
-    write_scope = ApiToken.Scope.WORK
-
+class MissingPeople(ReviewersView):
     @extend_schema(
         operation_id="missing_people",
         summary="Who is missing in a layer, the likeliest first",

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from django.db.models import QuerySet
-from django.http import Http404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.generics import ListAPIView
@@ -17,16 +16,16 @@ from gtm_hit.api.common.refusals import valid
 from gtm_hit.api.common.staff import (
     READS,
     WRITES,
+    ManagersView,
     Pages,
-    StaffView,
     answers,
     caller,
     dataset_or_404,
     invalid,
     layer_named,
+    named_or_404,
 )
-from gtm_hit.models import ApiToken, Qualification, QualificationAttempt, QualificationGrant
-from gtm_hit.ops.access.roles import Role
+from gtm_hit.models import Qualification, QualificationAttempt, QualificationGrant
 from gtm_hit.ops.qualifications import grants, managing
 from gtm_hit.ops.qualifications.managing import Order, PassMarks, QualificationError
 
@@ -91,10 +90,7 @@ class GrantSerializer(serializers.Serializer[Any]):
     why = serializers.CharField(max_length=500, default="", allow_blank=True)
 
 
-class Qualifications(StaffView):
-    read_role = write_role = Role.MANAGER
-    write_scope = ApiToken.Scope.WORK
-
+class Qualifications(ManagersView):
     @extend_schema(
         operation_id="qualifications",
         summary="Qualifications of a dataset",
@@ -123,12 +119,10 @@ class Qualifications(StaffView):
         return Response(QualificationShape(found).data, status=201)
 
 
-class Grants(StaffView, ListAPIView[QualificationGrant]):
+class Grants(ManagersView, ListAPIView[QualificationGrant]):
     queryset = QualificationGrant.objects.none()
     serializer_class = GrantShape
     pagination_class = Pages
-    read_role = write_role = Role.MANAGER
-    write_scope = ApiToken.Scope.WORK
 
     def get_queryset(self) -> QuerySet[QualificationGrant]:
         return grants.standing(one_or_404(self.kwargs["slug"], self.kwargs["name"]))
@@ -162,11 +156,10 @@ class Grants(StaffView, ListAPIView[QualificationGrant]):
         return Response(GrantShape(made).data)
 
 
-class Tries(StaffView, ListAPIView[QualificationAttempt]):
+class Tries(ManagersView, ListAPIView[QualificationAttempt]):
     queryset = QualificationAttempt.objects.none()
     serializer_class = TryShape
     pagination_class = Pages
-    read_role = Role.MANAGER
 
     def get_queryset(self) -> QuerySet[QualificationAttempt]:
         return managing.tries(one_or_404(self.kwargs["slug"], self.kwargs["name"]))
@@ -181,9 +174,4 @@ class Tries(StaffView, ListAPIView[QualificationAttempt]):
 
 
 def one_or_404(slug: str, name: str) -> Qualification:
-    found = None
-    if "\x00" not in name:
-        found = Qualification.objects.filter(dataset__slug=slug, name=name).first()
-    if found is None:
-        raise Http404
-    return found
+    return named_or_404(Qualification.objects.filter(dataset__slug=slug), name)

@@ -11,6 +11,7 @@ from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
+from gtm_hit.api.common.comments import comment_or_404, listed
 from gtm_hit.api.common.fields import LARGEST, StrictBooleanField
 from gtm_hit.api.common.refusals import refusal, valid
 from gtm_hit.api.common.staff import (
@@ -18,15 +19,14 @@ from gtm_hit.api.common.staff import (
     READS,
     WRITES,
     Pages,
-    StaffView,
+    ReviewersView,
     answers,
     asked,
     caller,
     dataset_or_404,
     invalid,
 )
-from gtm_hit.models import ApiToken, Assignment, Campaign, Category, Comment
-from gtm_hit.ops.access.roles import Role
+from gtm_hit.models import Assignment, Campaign, Category
 from gtm_hit.ops.quality.layer_rows import QualityError
 from gtm_hit.ops.review import comments, facts, mending, queue
 from gtm_hit.ops.review.differences import differences
@@ -39,12 +39,6 @@ BY_REVIEWERS = [
     *(Action.ACCEPT, Action.ACCEPT_MENDED, Action.RETURN, Action.TAKE_BACK),
     *(Action.REJECT, Action.UPHOLD, Action.OVERTURN),
 ]
-
-
-class ReviewView(StaffView):
-    read_role = Role.REVIEWER
-    write_role = Role.REVIEWER
-    write_scope = ApiToken.Scope.WORK
 
 
 def assignment_or_404(slug: str, pk: int) -> Assignment:
@@ -95,7 +89,7 @@ class DifferencesQuery(serializers.Serializer[Any]):
 ANY = OpenApiResponse(OpenApiTypes.OBJECT)
 
 
-class Reviews(ReviewView):
+class Reviews(ReviewersView):
     @extend_schema(
         operation_id="reviews",
         summary="What waits for a review, is returned, was decided, or is appealed against",
@@ -122,7 +116,7 @@ def campaign_named(dataset: Any, name: str | None) -> Campaign | None:
     return found
 
 
-class OneReview(ReviewView):
+class OneReview(ReviewersView):
     @extend_schema(
         operation_id="review",
         summary="An assignment with its comments, its steps and its appeal",
@@ -132,7 +126,7 @@ class OneReview(ReviewView):
         return Response(facts.whole(assignment_or_404(slug, pk)))
 
 
-class ReviewDifferences(ReviewView):
+class ReviewDifferences(ReviewersView):
     @extend_schema(
         operation_id="review_differences",
         summary="An assignment beside a reference: frames in time, differences worst first",
@@ -158,7 +152,7 @@ class ReviewDifferences(ReviewView):
         )
 
 
-class Decision(ReviewView):
+class Decision(ReviewersView):
     @extend_schema(
         operation_id="decide_review",
         summary="Accept, return, reject, or decide an appeal",
@@ -182,7 +176,7 @@ class Decision(ReviewView):
         )
 
 
-class ReviewComments(ReviewView):
+class ReviewComments(ReviewersView):
     @extend_schema(
         operation_id="comment_review",
         summary="Comment on an assignment, pinned to a frame and a person, or answer a comment",
@@ -197,10 +191,10 @@ class ReviewComments(ReviewView):
             comments.answer(comment_or_404(assignment, answered), caller(request), text)
         else:
             comments.remark(assignment, caller(request), text, comments.Pin(**wanted))
-        return Response({"comments": facts.comments_of(assignment)}, status=201)
+        return listed(assignment, 201)
 
 
-class ReviewComment(ReviewView):
+class ReviewComment(ReviewersView):
     @extend_schema(
         operation_id="resolve_review_comment",
         summary="Mark a comment as done, or as open again",
@@ -211,18 +205,10 @@ class ReviewComment(ReviewView):
         assignment = assignment_or_404(slug, pk)
         resolved = valid(ResolvedSerializer(data=request.data))["resolved"]
         comments.resolve(comment_or_404(assignment, comment), caller(request), resolved)
-        return Response({"comments": facts.comments_of(assignment)})
+        return listed(assignment)
 
 
-def comment_or_404(assignment: Assignment, pk: int) -> Comment:
-    rows = Comment.objects.select_related("assignment__batch__dataset", "assignment__worker", "answers")
-    found = rows.filter(assignment=assignment, pk=pk).first()
-    if found is None:
-        raise Http404
-    return found
-
-
-class ReviewMend(ReviewView):
+class ReviewMend(ReviewersView):
     @extend_schema(
         operation_id="mend_review",
         summary="A copy of the worker's layer under one's own name, to be put right",

@@ -11,8 +11,8 @@ from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from gtm_hit.api.common.staff import READS, WRITES, Conflict, Pages, answers
-from gtm_hit.api.gold import CampaignView, campaign_or_404
+from gtm_hit.api.common.campaigns import campaign_or_404
+from gtm_hit.api.common.staff import READS, WRITES, Conflict, ManagersView, Pages, answers
 from gtm_hit.models import Assignment, WorkerScore
 from gtm_hit.ops.scores import listing, words
 from gtm_hit.ops.scores.suspicion import by_suspicion
@@ -53,7 +53,7 @@ class MeasuredSerializer(serializers.Serializer[Any]):
     assignments = serializers.IntegerField(help_text="measured anew")
 
 
-class Scores(CampaignView, ListAPIView[WorkerScore]):
+class Scores(ManagersView, ListAPIView[WorkerScore]):
     queryset = WorkerScore.objects.none()
     serializer_class = ScoreShape
     pagination_class = Pages
@@ -82,7 +82,7 @@ class Scores(CampaignView, ListAPIView[WorkerScore]):
             raise Conflict(str(error)) from error
 
 
-class SuspiciousAssignments(CampaignView, ListAPIView[Assignment]):
+class SuspiciousAssignments(ManagersView, ListAPIView[Assignment]):
     queryset = Assignment.objects.none()
     serializer_class = SuspicionShape
     pagination_class = Pages

@@ -20,6 +20,7 @@ from gtm_hit.api.common.staff import (
     WRITES,
     Conflict,
     Pages,
+    ReviewersView,
     StaffView,
     answers,
     asked,
@@ -174,11 +175,10 @@ class Stitching(StaffView):
             raise invalid("", error) from error
 
 
-class Conflicts(StaffView, ListAPIView[StitchConflict]):
+class Conflicts(ReviewersView, ListAPIView[StitchConflict]):
     queryset = StitchConflict.objects.none()
     serializer_class = ConflictShape
     pagination_class = Pages
-    read_role = Role.REVIEWER
 
     def get_queryset(self) -> QuerySet[StitchConflict]:
         wanted = asked(self.request, ConflictsQuery)
@@ -195,9 +195,7 @@ class Conflicts(StaffView, ListAPIView[StitchConflict]):
         return super().get(request, *args, **kwargs)
 
 
-class OneConflict(StaffView):
-    read_role = Role.REVIEWER
-
+class OneConflict(ReviewersView):
     @extend_schema(
         operation_id="stitch_conflict",
         summary="Both sides on the ground and in the pictures",
@@ -209,10 +207,7 @@ class OneConflict(StaffView):
         return Response(ConflictShape(conflict).data | asdict(showing.detail(conflict)))
 
 
-class DecideConflict(StaffView):
-    write_role = Role.REVIEWER
-    write_scope = ApiToken.Scope.WORK
-
+class DecideConflict(ReviewersView):
     @extend_schema(
         operation_id="decide_stitch_conflict",
         summary="The same person, or two",
@@ -230,10 +225,7 @@ class DecideConflict(StaffView):
         return Response(ConflictShape(decided).data)
 
 
-class UndoConflict(StaffView):
-    write_role = Role.REVIEWER
-    write_scope = ApiToken.Scope.WORK
-
+class UndoConflict(ReviewersView):
     @extend_schema(
         operation_id="undo_stitch_conflict",
         summary="Take a decision back",

@@ -6,7 +6,7 @@ from typing import Any
 
 from django import forms
 from django.contrib import messages
-from django.http import Http404, HttpRequest, HttpResponse
+from django.http import HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import path
 from django.utils.translation import gettext as _
@@ -20,13 +20,7 @@ from gtm_hit.ops.gold import frames, planting, results
 from gtm_hit.ops.gold.truths import truths
 from gtm_hit.ops.qualifications import managing
 from gtm_hit.pages.common.access import needs
-
-
-def campaign_or_404(slug: str, name: str) -> Campaign:
-    found = Campaign.objects.filter(dataset__slug=slug, name=name).select_related("dataset").first()
-    if found is None:
-        raise Http404(_("There is no campaign “%(name)s”.") % {"name": name})
-    return found
+from gtm_hit.pages.common.campaign_choice import campaign_or_404
 
 
 class GoldForm(forms.Form):

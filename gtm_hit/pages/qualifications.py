@@ -82,7 +82,8 @@ class NewForm(MarksForm):
 
 def qualification_or_404(slug: str, name: str) -> Qualification:
     found = Qualification.objects.filter(dataset__slug=slug, name=name).select_related("dataset", "truth")
-    if (one := found.first()) is None:
+    # PostgreSQL has no strings with a zero byte and fails instead of finding nothing.
+    if (one := None if "\x00" in name else found.first()) is None:
         raise Http404(_("There is no qualification “%(name)s”.") % {"name": name})
     return one
 

@@ -20,7 +20,8 @@ from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.scores import listing, words
 from gtm_hit.ops.scores.suspicion import by_suspicion
 from gtm_hit.pages.common.access import needs
-from gtm_hit.pages.gold import campaign_or_404, frame_of
+from gtm_hit.pages.common.campaign_choice import campaign_or_404
+from gtm_hit.pages.gold import frame_of
 from gtm_hit.pages.quality.statistics import attachment
 
 ROWS_PER_PAGE = 100

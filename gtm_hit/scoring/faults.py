@@ -6,7 +6,7 @@ on the ground, whatever numbers people go by then.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -141,32 +141,30 @@ def _unused(used: set[int | None], rng: np.random.Generator) -> int:
 
 def planted(frames: Frames, faults: Sequence[Fault]) -> dict[int, Positions]:
     """The frames with the faults in them."""
-    shown = {number: dict(people) for number, people in frames.items()}
-    for fault in faults:
-        if fault.kind is FaultKind.SWAPPED:
-            for number in shown:
-                if number >= fault.frame:
-                    _exchange(shown[number], fault.person, fault.other)
-        elif fault.wrong is None:
-            shown[fault.frame].pop(fault.person, None)
-        else:
-            shown[fault.frame][fault.person] = fault.wrong
-    return shown
+    return _put(frames, faults, lambda fault: fault.wrong)
 
 
 def unplanted(shown: Frames, faults: Sequence[Fault]) -> dict[int, Positions]:
     """What was there before the faults were planted: the way back of `planted`."""
-    right = {number: dict(people) for number, people in shown.items()}
+    return _put(shown, faults, lambda fault: fault.right)
+
+
+def _put(
+    frames: Frames, faults: Sequence[Fault], place: Callable[[Fault], int | None]
+) -> dict[int, Positions]:
+    """Each fault's person at `place`, nowhere where there is none; a swap undoes itself."""
+    put = {number: dict(people) for number, people in frames.items()}
     for fault in faults:
+        where = place(fault)
         if fault.kind is FaultKind.SWAPPED:
-            for number in right:
+            for number in put:
                 if number >= fault.frame:
-                    _exchange(right[number], fault.person, fault.other)
-        elif fault.right is None:
-            right[fault.frame].pop(fault.person, None)
+                    _exchange(put[number], fault.person, fault.other)
+        elif where is None:
+            put[fault.frame].pop(fault.person, None)
         else:
-            right[fault.frame][fault.person] = fault.right
-    return right
+            put[fault.frame][fault.person] = where
+    return put
 
 
 def repaired(fault: Fault, right: Frames, now: Frames, grid: Grid) -> bool:

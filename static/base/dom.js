@@ -46,3 +46,11 @@ export function required(root, selector, kind) {
   if (!(node instanceof kind)) throw new TypeError(`there is no ${selector}`);
   return node;
 }
+
+/**
+ * What the server wrote into the page under this id.
+ * @param {string} id
+ */
+export function pageJson(id) {
+  return JSON.parse(required(document, `#${id}`, HTMLScriptElement).text);
+}

@@ -1,8 +1,9 @@
 import { Api } from "../base/api.js";
-import { element, required } from "../base/dom.js";
+import { pageJson, required } from "../base/dom.js";
 import { problemWords } from "../base/failure_words.js";
 import { gettext } from "../base/messages.js";
 import { Notices } from "../base/notices.js";
+import { opening } from "../base/opening.js";
 import { fetchTables, openScene } from "../tables/tables.js";
 import { Images } from "../views/images.js";
 import { CompareStore } from "./store.js";
@@ -12,30 +13,11 @@ import { buildViewer } from "./viewer.js";
 
 const root = required(document, "#viewer", HTMLElement);
 /** @type {Comparison} */
-const comparison = JSON.parse(required(document, "#comparison", HTMLScriptElement).text);
+const comparison = pageJson("comparison");
 const { scene: base, truth, found, frames } = comparison;
 const { home = "", marks = "" } = document.body.dataset;
 
-try {
-  await start();
-  root.dataset.ready = "true";
-} catch (error) {
-  console.error(error);
-  root.replaceChildren(
-    element(
-      "div",
-      { className: "start-problem", role: "alert" },
-      element("h1", {}, gettext("The comparison could not be shown")),
-      element("p", {}, problemWords(error)),
-      element(
-        "button",
-        { type: "button", className: "main", onclick: () => window.location.reload() },
-        gettext("Try again"),
-      ),
-      element("a", { href: home }, gettext("Back")),
-    ),
-  );
-}
+await opening(root, start, { title: gettext("The comparison could not be shown"), home: home });
 
 async function start() {
   const api = new Api({ base, token: "", mode: "layer", csrf: "" });

@@ -1,4 +1,4 @@
-import { required, setText } from "../base/dom.js";
+import { pageJson, required, setText } from "../base/dom.js";
 import { paths } from "./paths.js";
 import { fetchAhead, pictures } from "./pictures.js";
 import { Queue } from "./queue.js";
@@ -6,7 +6,7 @@ import { Queue } from "./queue.js";
 /** @typedef {import("./queue.js").Conflict} Conflict */
 
 const page = required(document, "[data-conflicts]", HTMLElement);
-const given = JSON.parse(required(document, "#queue", HTMLScriptElement).textContent ?? "{}");
+const given = pageJson("queue");
 const csrf = required(page, "[name=csrfmiddlewaretoken]", HTMLInputElement).value;
 const part = (/** @type {string} */ name) => required(page, `[data-${name}]`, HTMLElement);
 const [question, left, problem, buttons, sides, end] = [

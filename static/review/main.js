@@ -1,9 +1,9 @@
 import { Api } from "../base/api.js";
-import { element, required } from "../base/dom.js";
-import { problemWords } from "../base/failure_words.js";
+import { pageJson, required } from "../base/dom.js";
 import { fetchParts } from "../base/lazy.js";
 import { gettext } from "../base/messages.js";
 import { Notices } from "../base/notices.js";
+import { opening } from "../base/opening.js";
 import { fetchTables, openScene } from "../tables/tables.js";
 import { Images } from "../views/images.js";
 import { buildDesk } from "./desk.js";
@@ -12,28 +12,9 @@ import { DeskStore } from "./store.js";
 
 const root = required(document, "#viewer", HTMLElement);
 /** @type {import("./desk.js").Desk} */
-const desk = JSON.parse(required(document, "#desk", HTMLScriptElement).text);
+const desk = pageJson("desk");
 
-try {
-  await start();
-  root.dataset.ready = "true";
-} catch (error) {
-  console.error(error);
-  root.replaceChildren(
-    element(
-      "div",
-      { className: "start-problem", role: "alert" },
-      element("h1", {}, gettext("The review could not be opened")),
-      element("p", {}, problemWords(error)),
-      element(
-        "button",
-        { type: "button", className: "main", onclick: () => window.location.reload() },
-        gettext("Try again"),
-      ),
-      element("a", { href: desk.home }, gettext("Back")),
-    ),
-  );
-}
+await opening(root, start, { title: gettext("The review could not be opened"), home: desk.home });
 
 async function start() {
   const api = new Api({ base: desk.scene, token: "", mode: "layer", csrf: "" });

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from decimal import Decimal
 from typing import Any
 
@@ -12,9 +11,8 @@ from gtm_hit.models import Assignment, Campaign, Job, MoneyEntry, OutboxRow, Pla
 from gtm_hit.ops.outbox import rows
 from gtm_hit.ops.pay import ledger
 from tests.api.conftest import Caller, bearer
-from tests.paid_campaign import assign, make_account, make_campaign
-from tests.prolific_server import TOKEN, Prolific, prolific_server
-from tests.work_scene import make_worker
+from tests.paid_campaign import accepted_work, assign, prolific_campaign
+from tests.prolific_server import Prolific
 
 PLACE = "/api/v1/datasets/square/campaigns/autumn/"
 GETS = [
@@ -43,26 +41,13 @@ POSTS: dict[str, dict[str, Any]] = {
 
 
 @pytest.fixture
-def prolific(settings: Any) -> Iterator[Prolific]:
-    with prolific_server() as server:
-        settings.PROLIFIC_ADDRESSES = [server.base]
-        server.add("s1", "ada")
-        yield server
-
-
-@pytest.fixture
 def campaign(db: None, prolific: Prolific) -> Campaign:
-    campaign = make_campaign(platform=Campaign.Platform.PROLIFIC)
-    make_account(campaign, token=TOKEN)
-    return campaign
+    return prolific_campaign()
 
 
 @pytest.fixture
 def ada(campaign: Campaign) -> Worker:
-    """An accepted batch of half an hour, and nobody was told."""
-    ada = make_worker("ada", "prolific")
-    assign(campaign, ada, Assignment.State.ACCEPTED, minutes=30, submission="s1")
-    return ada
+    return accepted_work(campaign)
 
 
 def traces() -> tuple[int, ...]:

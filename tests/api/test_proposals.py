@@ -2,34 +2,24 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from gtm_hit.models import Annotation, Dataset, Job, Layer, ProposalRun, Refusal
 from gtm_hit.ops.proposals import runs
-from gtm_hit.ops.proposals.proposing import propose
 from gtm_hit.ops.work import assignments, batches
 from tests.api.conftest import Caller, bearer, holder
 from tests.ops.proposals.conftest import NUMBERS, dataset  # noqa: F401
-from tests.ops.proposals.watcher import Watcher, make_run, walk
+from tests.ops.proposals.watcher import shown_run, walk
 from tests.work_scene import make_layer, make_worker
 
 BASE = "/api/v1/datasets/square/"
 
 
-@pytest.fixture(autouse=True)
-def own_tables(settings: Any, tmp_path: Path) -> None:
-    settings.TABLES_ROOT = tmp_path / "tables"
-
-
 @pytest.fixture
 def run(dataset: Dataset) -> ProposalRun:  # noqa: F811
-    made = make_run(dataset)
-    propose(made, Watcher(dataset, walk(NUMBERS), alarms=["C2"]))
-    runs.use(made)
-    return made
+    return shown_run(dataset, walk(NUMBERS), alarms=["C2"])
 
 
 @pytest.fixture

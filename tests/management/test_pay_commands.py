@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from io import StringIO
 from pathlib import Path
-from typing import Any
 
 import pytest
 from django.contrib.auth.models import User
@@ -15,28 +13,16 @@ from django.core.management import CommandError, call_command
 from gtm_hit.models import Assignment, Campaign, MoneyEntry, OutboxRow, PlatformAccount, Worker
 from gtm_hit.ops.access.roles import Role
 from tests.campaign_scene import account
-from tests.paid_campaign import assign, make_account, make_campaign
-from tests.prolific_server import TOKEN, Prolific, prolific_server
+from tests.paid_campaign import accepted_work, assign, prolific_campaign
+from tests.prolific_server import TOKEN, Prolific
 from tests.work_scene import make_dataset, make_worker
 
 NAMES = ("square", "autumn")
 
 
 @pytest.fixture
-def prolific(settings: Any) -> Iterator[Prolific]:
-    with prolific_server() as server:
-        settings.PROLIFIC_ADDRESSES = [server.base]
-        server.add("s1", "ada")
-        yield server
-
-
-@pytest.fixture
 def ada(db: None, prolific: Prolific) -> Worker:
-    campaign = make_campaign(platform=Campaign.Platform.PROLIFIC, title="T", instructions="I")
-    make_account(campaign, token=TOKEN)
-    ada = make_worker("ada", "prolific")
-    assign(campaign, ada, Assignment.State.ACCEPTED, minutes=30, submission="s1")
-    return ada
+    return accepted_work(prolific_campaign(title="T", instructions="I"))
 
 
 def run(command: str, *arguments: str) -> str:

@@ -21,8 +21,7 @@ def printed(*arguments: Any) -> str:
 
 
 @pytest.fixture(autouse=True)
-def watcher(dataset: Dataset, monkeypatch: pytest.MonkeyPatch, settings: Any, tmp_path: Path) -> Watcher:  # noqa: F811
-    settings.TABLES_ROOT = tmp_path / "tables"
+def watcher(dataset: Dataset, monkeypatch: pytest.MonkeyPatch) -> Watcher:  # noqa: F811
     made = Watcher(dataset, walk(NUMBERS), alarms=["C2"])
     monkeypatch.setattr(looking, "looker", lambda *_order: made)
     return made

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -15,8 +14,8 @@ from django.test.utils import CaptureQueriesContext
 from gtm_hit.models import Assignment, Campaign, Job, MoneyEntry, OutboxRow, PlatformAccount, Worker
 from gtm_hit.ops.outbox import handover, planning, rows
 from gtm_hit.ops.pay import table
-from tests.paid_campaign import assign, make_account, make_campaign
-from tests.prolific_server import TOKEN, Prolific, prolific_server
+from tests.paid_campaign import accepted_work, assign, make_campaign, prolific_campaign
+from tests.prolific_server import Prolific
 from tests.work_scene import make_dataset, make_worker
 
 PLACE = "/datasets/square/campaigns/autumn/"
@@ -36,25 +35,13 @@ BUTTONS = [
 
 
 @pytest.fixture
-def prolific(settings: Any) -> Iterator[Prolific]:
-    with prolific_server() as server:
-        settings.PROLIFIC_ADDRESSES = [server.base]
-        server.add("s1", "ada")
-        yield server
-
-
-@pytest.fixture
 def campaign(db: None, prolific: Prolific) -> Campaign:
-    campaign = make_campaign(platform=Campaign.Platform.PROLIFIC, title="Autumn", instructions="Seven views")
-    make_account(campaign, token=TOKEN)
-    return campaign
+    return prolific_campaign(title="Autumn", instructions="Seven views")
 
 
 @pytest.fixture
 def ada(campaign: Campaign) -> Worker:
-    ada = make_worker("ada", "prolific")
-    assign(campaign, ada, Assignment.State.ACCEPTED, minutes=30, submission="s1")
-    return ada
+    return accepted_work(campaign)
 
 
 @pytest.fixture

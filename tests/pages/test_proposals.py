@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -9,18 +8,12 @@ from django.test import Client
 
 from gtm_hit.models import Annotation, Dataset, Job, Layer, ProposalRun, Refusal
 from gtm_hit.ops.proposals import layers, runs
-from gtm_hit.ops.proposals.proposing import propose
 from tests.ops.proposals.conftest import NUMBERS, dataset  # noqa: F401
-from tests.ops.proposals.watcher import Watcher, make_run, walk
+from tests.ops.proposals.watcher import shown_run, walk
 from tests.work_scene import make_layer
 
 RUNS = "/datasets/square/proposals/"
 MISSING = "/datasets/square/layers/found/missing/"
-
-
-@pytest.fixture(autouse=True)
-def own_tables(settings: Any, tmp_path: Path) -> None:
-    settings.TABLES_ROOT = tmp_path / "tables"
 
 
 @pytest.fixture
@@ -31,10 +24,7 @@ def staff(client: Client, db: None) -> Client:
 
 @pytest.fixture
 def run(dataset: Dataset) -> ProposalRun:  # noqa: F811
-    made = make_run(dataset)
-    propose(made, Watcher(dataset, walk(NUMBERS), alarms=["C2"]))
-    runs.use(made)
-    return made
+    return shown_run(dataset, walk(NUMBERS), alarms=["C2"])
 
 
 @pytest.fixture

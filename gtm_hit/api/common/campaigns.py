@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from django.http import Http404
 from rest_framework import exceptions, status
 
 from gtm_hit.api.common.refusals import refusal
-from gtm_hit.api.common.staff import READS, WRITES, Conflict
+from gtm_hit.api.common.staff import READS, WRITES, Conflict, named_or_404
 from gtm_hit.models import Campaign
 from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.outbox.platform import PlatformError
@@ -42,9 +41,4 @@ def refusals() -> Iterator[None]:
 
 def campaign_or_404(slug: str, name: str) -> Campaign:
     """With its dataset."""
-    # PostgreSQL has no strings with a zero byte and fails instead of finding nothing.
-    found = Campaign.objects.select_related("dataset").filter(dataset__slug=slug, name=name)
-    campaign = None if "\x00" in name else found.first()
-    if campaign is None:
-        raise Http404
-    return campaign
+    return named_or_404(Campaign.objects.select_related("dataset").filter(dataset__slug=slug), name)

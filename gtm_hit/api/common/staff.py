@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 from django.contrib.auth.models import User
-from django.db.models import QuerySet
+from django.db.models import Model, QuerySet
 from django.http import Http404
 from drf_spectacular.utils import OpenApiResponse
 from rest_framework import exceptions, status
@@ -19,6 +19,8 @@ from gtm_hit.api.common.parsing import BoundedJSONParser
 from gtm_hit.api.common.refusals import refusal, valid
 from gtm_hit.models import ApiToken, Dataset, Layer
 from gtm_hit.ops.access.roles import SEES, Role, Roles, layers_of
+
+Row = TypeVar("Row", bound=Model)
 
 READS = {401: refusal("not_signed_in"), 403: refusal("forbidden"), 404: refusal("not_found")}
 ASKS = {400: refusal("invalid; details: a list of place and reason"), **READS}
@@ -52,6 +54,16 @@ class StaffView(APIView):
     everywhere = False
 
 
+class ManagersView(StaffView):
+    read_role = write_role = Role.MANAGER
+    write_scope = ApiToken.Scope.WORK
+
+
+class ReviewersView(StaffView):
+    read_role = write_role = Role.REVIEWER
+    write_scope = ApiToken.Scope.WORK
+
+
 class Conflict(exceptions.APIException):
     status_code = status.HTTP_409_CONFLICT
     default_code = "under_way"
@@ -77,12 +89,16 @@ def dataset_or_404(slug: str) -> Dataset:
     return found
 
 
-def layer_or_404(request: Request, slug: str, name: str) -> Layer:
+def named_or_404(rows: QuerySet[Row], name: str) -> Row:
     # PostgreSQL has no strings with a zero byte and fails instead of finding nothing.
-    found = None if "\x00" in name else _layers(request, slug).filter(name=name).first()
+    found = None if "\x00" in name else rows.filter(name=name).first()
     if found is None:
         raise Http404
     return found
+
+
+def layer_or_404(request: Request, slug: str, name: str) -> Layer:
+    return named_or_404(_layers(request, slug), name)
 
 
 def layer_named(request: Request, dataset: Dataset, name: str, place: str) -> Layer:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import Any, cast
 
-from django.http import Http404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
+from gtm_hit.api.common.comments import comment_or_404, listed
 from gtm_hit.api.common.fields import LARGEST, StrictBooleanField
 from gtm_hit.api.common.refusals import REFUSALS, refusal, valid
 from gtm_hit.api.workbench.places import PlacedView
-from gtm_hit.models import Assignment, Comment
-from gtm_hit.ops.review import comments, facts
+from gtm_hit.models import Assignment
+from gtm_hit.ops.review import comments
 from gtm_hit.ops.review.decision import told
 from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.review.transitions import transition
@@ -53,18 +53,6 @@ class DecisionSerializer(serializers.Serializer[Any]):
 
 def mine(request: Request) -> Assignment:
     return cast(Assignment, request.auth)
-
-
-def listed(assignment: Assignment, status: int = 200) -> Response:
-    return Response({"comments": facts.comments_of(assignment)}, status=status)
-
-
-def comment_or_404(assignment: Assignment, pk: int) -> Comment:
-    rows = Comment.objects.select_related("assignment__worker", "answers")
-    found = rows.filter(assignment=assignment, pk=pk).first()
-    if found is None:
-        raise Http404
-    return found
 
 
 class AssignmentComments(PlacedView):

@@ -30,9 +30,6 @@ def readme(
     """Markdown; `files` is what the export's own README says of them."""
     summary = found.summary
     heading = f"{found.dataset}, release {number}" + (f": {title}" if title else "")
-    views = " | ".join(f"{name} {count}" for name, count in _visible(found))
-    exactly = " | ".join(f"{k}: {count}" for k, count in enumerate(found.visibility.exactly.tolist()))
-    seen = " | ".join(f"{k}: {count}" for k, count in enumerate(ground.counts.tolist()))
     return "\n".join(
         [
             f"# {heading}",
@@ -41,33 +38,48 @@ def readme(
             _since(changes, since),
             "The licence is in `LICENSE`, who annotated what in `provenance.csv`.",
             "",
-            "## Statistics",
-            "",
-            "| | mean | median | 5 % | 95 % | least | most | of |",
-            "|---|---|---|---|---|---|---|---|",
-            *(_row(words, getattr(summary, name), unit) for name, words, unit in DISTRIBUTIONS),
-            "",
-            f"Annotations visible in each view: {views}",
-            "",
-            f"Annotations visible in exactly k views: {exactly}",
-            "",
-            f"Positions seen by exactly k cameras, every {ground.every}th along both axes: {seen}; "
-            f"mean {ground.mean:.2f}",
-            "",
+            *_statistics(found, ground),
             *(f"![{name}](figures/{name}.svg)" for name in figures),
             "",
-            "## Files",
-            "",
-            "```",
-            files.rstrip(),
-            "LICENSE         the terms of use",
-            "provenance.csv  for every annotation: worker's pseudonym, origin, share of the active seconds",
-            "changes.json    people added, removed and moved since the release before, by frame",
-            "figures/        the figures above",
-            "```",
-            "",
+            *_files(files),
         ]
     )
+
+
+def _statistics(found: LayerStatistics, ground: Coverage) -> list[str]:
+    views = " | ".join(f"{name} {count}" for name, count in _visible(found))
+    exactly = " | ".join(f"{k}: {count}" for k, count in enumerate(found.visibility.exactly.tolist()))
+    seen = " | ".join(f"{k}: {count}" for k, count in enumerate(ground.counts.tolist()))
+    return [
+        "## Statistics",
+        "",
+        "| | mean | median | 5 % | 95 % | least | most | of |",
+        "|---|---|---|---|---|---|---|---|",
+        *(_row(words, getattr(found.summary, name), unit) for name, words, unit in DISTRIBUTIONS),
+        "",
+        f"Annotations visible in each view: {views}",
+        "",
+        f"Annotations visible in exactly k views: {exactly}",
+        "",
+        f"Positions seen by exactly k cameras, every {ground.every}th along both axes: {seen}; "
+        f"mean {ground.mean:.2f}",
+        "",
+    ]
+
+
+def _files(files: str) -> list[str]:
+    return [
+        "## Files",
+        "",
+        "```",
+        files.rstrip(),
+        "LICENSE         the terms of use",
+        "provenance.csv  for every annotation: worker's pseudonym, origin, share of the active seconds",
+        "changes.json    people added, removed and moved since the release before, by frame",
+        "figures/        the figures above",
+        "```",
+        "",
+    ]
 
 
 def _visible(found: LayerStatistics) -> Iterable[tuple[str, int]]:

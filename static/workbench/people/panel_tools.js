@@ -1,6 +1,6 @@
 import { element } from "../../base/dom.js";
 import { gettext } from "../../base/messages.js";
-import { titleFor } from "../keys/keys.js";
+import { toolButton } from "../keys/tool_button.js";
 
 /** @type {[string, () => string][]} ids of the key table, and what the buttons say */
 const ABOUT_PERSON = [
@@ -27,24 +27,4 @@ export function panelTools(store, perform, heads) {
   heads.on("change", ({ on }) => byHead.setAttribute("aria-pressed", String(on)));
   const history = toolButton("history", gettext("History"), perform);
   return element("div", { className: "panel-tools" }, person, byHead, history);
-}
-
-/** @param {string} id @param {string} text @param {(id: string) => void} perform */
-function toolButton(id, text, perform) {
-  /** @type {HTMLButtonElement} */
-  const button = element(
-    "button",
-    {
-      type: "button",
-      className: "quiet",
-      "data-action": id,
-      title: titleFor(id),
-      onclick: (event) => {
-        if (event.detail > 0) button.blur(); // Space would press it again
-        perform(id);
-      },
-    },
-    text,
-  );
-  return button;
 }

@@ -6,7 +6,7 @@
  */
 import { element, setText } from "../../base/dom.js";
 import { gettext } from "../../base/messages.js";
-import { titleFor } from "../keys/keys.js";
+import { toolButton } from "../keys/tool_button.js";
 import { percent } from "./proposal_marks.js";
 
 const STEP = 0.05;
@@ -41,8 +41,8 @@ export class ProposalPanel {
     const tools = element(
       "div",
       { className: "panel-tools" },
-      button("acceptAll", gettext("Accept all"), perform),
-      button("doubtful", gettext("Doubtful ones"), perform),
+      toolButton("acceptAll", gettext("Accept all"), perform),
+      toolButton("doubtful", gettext("Doubtful ones"), perform),
     );
     this.element = element(
       "section",
@@ -72,24 +72,4 @@ export class ProposalPanel {
     });
     setText(this._count, likely.length + doubtful.length ? words : gettext("Proposed: nobody is left"));
   }
-}
-
-/** @param {string} id @param {string} text @param {(id: string) => void} perform */
-function button(id, text, perform) {
-  /** @type {HTMLButtonElement} */
-  const made = element(
-    "button",
-    {
-      type: "button",
-      className: "quiet",
-      "data-action": id,
-      title: titleFor(id),
-      onclick: (event) => {
-        if (event.detail > 0) made.blur(); // Space would press it again
-        perform(id);
-      },
-    },
-    text,
-  );
-  return made;
 }

@@ -22,13 +22,6 @@ LATER = NOW + timedelta(days=31)
 
 
 @pytest.fixture
-def exports(tmp_path: Path, settings: Any) -> Path:
-    settings.EXPORTS_ROOT = tmp_path / "exports"
-    settings.TABLES_ROOT = tmp_path / "tables"
-    return settings.EXPORTS_ROOT
-
-
-@pytest.fixture
 def job(exports: Path) -> Job:
     dataset = make_dataset()
     layer = make_layer(dataset)

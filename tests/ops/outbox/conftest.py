@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -9,8 +8,8 @@ from django.contrib.auth.models import User
 from gtm_hit.crowd.prolific import connect
 from gtm_hit.models import Assignment, Campaign, OutboxRow, Worker
 from gtm_hit.ops.outbox import planning, sending
-from tests.paid_campaign import assign, become, make_account, make_campaign
-from tests.prolific_server import TOKEN, Prolific, prolific_server
+from tests.paid_campaign import assign, become, prolific_campaign
+from tests.prolific_server import Prolific
 from tests.work_scene import make_worker
 
 REASON = (
@@ -20,18 +19,8 @@ State = Assignment.State
 
 
 @pytest.fixture
-def prolific(settings: Any) -> Iterator[Prolific]:
-    with prolific_server() as server:
-        settings.PROLIFIC_ADDRESSES = [server.base]
-        server.add("s1", "ada")
-        yield server
-
-
-@pytest.fixture
 def campaign(db: None, prolific: Prolific) -> Campaign:
-    campaign = make_campaign(platform=Campaign.Platform.PROLIFIC)
-    make_account(campaign, token=TOKEN)
-    return campaign
+    return prolific_campaign()
 
 
 @pytest.fixture

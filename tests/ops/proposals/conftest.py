@@ -20,7 +20,7 @@ NUMBERS = tuple(range(0, 40, 5))
 @pytest.fixture
 def dataset(db: None, settings: Any, tmp_path: Path) -> Dataset:
     """Eight frames of two cameras, with pictures of its own in the storage."""
-    settings.MEDIA_ROOT = tmp_path / "media"
+    settings.MEDIA_ROOT, settings.TABLES_ROOT = tmp_path / "media", tmp_path / "tables"
     made = make_dataset(frames=len(NUMBERS), images=True)
     for image in Image.objects.filter(frame__dataset=made):
         store(image)

@@ -2,37 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 
 from gtm_hit.models import Annotation, Dataset, Layer, PictureBoxes, Refusal
 from gtm_hit.ops.proposals import layers, missing, runs
 from gtm_hit.ops.proposals.errors import ProposalError
 from gtm_hit.ops.proposals.pictures import pictures_of
-from gtm_hit.ops.proposals.proposing import propose
 from gtm_hit.ops.work import assignments, batches
 from gtm_hit.vision.missing import Why
 from tests.ops.proposals.conftest import NUMBERS
-from tests.ops.proposals.watcher import Watcher, make_run, walk
+from tests.ops.proposals.watcher import Watcher, shown_run, two_walkers
 from tests.work_scene import make_layer, make_worker, row, save
-
-
-@pytest.fixture(autouse=True)
-def tables(settings: Any, tmp_path: Any) -> None:
-    settings.TABLES_ROOT = tmp_path / "tables"
 
 
 @pytest.fixture
 def finished(dataset: Dataset) -> Layer:
     """Two walkers, annotated exactly where they are proposed."""
-    people = walk(NUMBERS)
-    for number, found in walk(NUMBERS, (-2.0, 2.0), (0.0, -0.2)).items():
-        people[number] += found
-    run = make_run(dataset)
-    propose(run, Watcher(dataset, people))
-    runs.use(run)
-    return layers.make_layer(run, "finished")
+    return layers.make_layer(shown_run(dataset, two_walkers(NUMBERS)), "finished")
 
 
 def take_out(layer: Layer, number: int, person: int) -> int:

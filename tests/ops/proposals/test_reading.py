@@ -13,19 +13,14 @@ from gtm_hit.ops.proposals.reading import for_layer
 from gtm_hit.ops.work import assignments, batches
 from gtm_hit.ops.work.assignments import ReadOnly
 from tests.ops.proposals.conftest import NUMBERS
-from tests.ops.proposals.watcher import Watcher, make_run, person, walk
+from tests.ops.proposals.watcher import Watcher, make_run, person, shown_run, two_walkers, walk
 from tests.work_scene import do_frames, finish, make_layer, make_worker, row, save
 
 
 @pytest.fixture
 def walked(dataset: Dataset) -> Dataset:
     """Two who walk by, proposed and shown."""
-    people = walk(NUMBERS)
-    for number, found in walk(NUMBERS, (-2.0, 2.0), (0.0, -0.2)).items():
-        people[number] += found
-    run = make_run(dataset)
-    propose(run, Watcher(dataset, people))
-    runs.use(run)
+    shown_run(dataset, two_walkers(NUMBERS))
     return dataset
 
 

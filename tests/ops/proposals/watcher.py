@@ -8,6 +8,7 @@ from typing import Any
 from gtm_hit.models import Dataset, Frame, ProposalRun
 from gtm_hit.ops.proposals import runs
 from gtm_hit.ops.proposals.pictures import StoredPictures, pictures_of
+from gtm_hit.ops.proposals.proposing import propose
 from gtm_hit.vision.people import CameraAlarm, Evidence, FrameProposals, Proposal
 
 XY = tuple[float, float]
@@ -55,3 +56,19 @@ def walk(numbers: Sequence[int], start: XY = (0.0, 0.0), step: XY = (0.3, 0.0)) 
 
 def make_run(dataset: Dataset, method: str = "cover", **told: Any) -> ProposalRun:
     return runs.find_or_make(dataset, method, Watcher.model, {"detector": "built-in", **told})
+
+
+def two_walkers(numbers: Sequence[int]) -> dict[int, list[Proposal]]:
+    """Two who walk by, each in a direction of their own."""
+    people = walk(numbers)
+    for number, found in walk(numbers, (-2.0, 2.0), (0.0, -0.2)).items():
+        people[number] += found
+    return people
+
+
+def shown_run(dataset: Dataset, people: dict[int, list[Proposal]], alarms: Sequence[str] = ()) -> ProposalRun:
+    """These people, proposed and shown to annotators."""
+    run = make_run(dataset)
+    propose(run, Watcher(dataset, people, alarms))
+    runs.use(run)
+    return run

@@ -15,18 +15,10 @@ from gtm_hit.ops.campaigns import links as campaign_links
 from gtm_hit.ops.campaigns.errors import CampaignError
 from gtm_hit.ops.work import links
 from gtm_hit.ops.work.assignments import claim
-from gtm_hit.ops.work.batches import make_batches
 from tests.campaign_scene import make_campaign
-from tests.work_scene import finish, make_dataset, make_worker
+from tests.work_scene import finish, make_worker
 
 Later = Callable[[int], None]
-
-
-@pytest.fixture
-def dataset(db: None) -> Dataset:
-    dataset = make_dataset()
-    make_batches(dataset)
-    return dataset
 
 
 @pytest.fixture

@@ -8,15 +8,7 @@ from hypothesis import strategies as st
 from gtm_hit.models import Assignment, Dataset
 from gtm_hit.ops.work import links
 from gtm_hit.ops.work.assignments import claim
-from gtm_hit.ops.work.batches import make_batches
 from tests.work_scene import make_dataset, make_worker
-
-
-@pytest.fixture
-def dataset(db: None) -> Dataset:
-    dataset = make_dataset()
-    make_batches(dataset)
-    return dataset
 
 
 @pytest.fixture
