@@ -1,7 +1,7 @@
 """In whose name a command acts.
 
 Whoever may run commands may do everything: they ask for no role. Only where a command acts in somebody's name
-(`--user`, `--by`) that person must be allowed to do it: what is written down then could have been done so.
+(`--as`, `--by`) that person must be allowed to do it: what is written down then could have been done so.
 """
 
 from __future__ import annotations
