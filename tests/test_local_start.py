@@ -117,7 +117,7 @@ def test_a_second_start_on_the_same_data_is_refused(start: Start) -> None:
 
 
 def open_to_others(folder: Path) -> list[str]:
-    """Files others may touch; the broker's messages come and go meanwhile, so a name may be gone when looked at."""
+    """Files others may touch; messages of the broker come and go while one looks."""
     command = ["find", folder, "-ignore_readdir_race", "-perm", "/077"]
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
 
