@@ -8,23 +8,44 @@ from pathlib import Path
 import pytest
 
 APP = Path(__file__).resolve().parent.parent / "gtm_hit"
-PURE = {"geometry", "formats", "metrics", "scoring", "demo", "stitching", "vision"}
+PURE = {"geometry", "formats", "metrics", "scoring", "demo", "stitching", "vision", "calibration"}
 MAY_IMPORT = {
     "geometry": set(),
     "formats": {"geometry"},
     "metrics": {"geometry", "formats"},
     "scoring": {"geometry", "metrics"},
     "vision": {"geometry", "formats", "metrics"},
-    "demo": {"geometry", "formats"},
+    "calibration": {"geometry", "formats"},
+    "demo": {"geometry", "formats", "calibration"},
     "stitching": {"metrics"},
     "models": {"geometry"},
-    "ops": {"geometry", "formats", "metrics", "scoring", "demo", "stitching", "vision", "models"},
+    "ops": {
+        "geometry",
+        "formats",
+        "metrics",
+        "scoring",
+        "demo",
+        "stitching",
+        "vision",
+        "calibration",
+        "models",
+    },
     "crowd": {"models", "ops"},
     "tasks": {"models", "ops", "crowd"},
     "api": {"geometry", "formats", "metrics", "models", "ops", "crowd"},
     "pages": {"geometry", "formats", "metrics", "models", "ops", "crowd"},
     "templatetags": {"models", "ops"},
-    "management": {"geometry", "formats", "metrics", "vision", "demo", "models", "ops", "crowd"},
+    "management": {
+        "geometry",
+        "formats",
+        "metrics",
+        "vision",
+        "calibration",
+        "demo",
+        "models",
+        "ops",
+        "crowd",
+    },
     "admin": {"models", "ops"},
 }
 FRAMEWORKS = {"django", "rest_framework", "celery", "drf_spectacular", "annotator"}
