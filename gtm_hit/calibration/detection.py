@@ -1,0 +1,116 @@
+"""Looking for a board in one picture, to a fraction of a pixel."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+
+from gtm_hit.calibration.boards import FEWEST_CORNERS, Board, BoardKind, charuco, object_points
+from gtm_hit.calibration.reasons import why_briefly, why_circles, why_markers, why_squares, why_unusable
+from gtm_hit.calibration.spotting import (
+    chessboard_corners,
+    circle_centres,
+    grid_spacing,
+    largest_chessboard,
+    shrunk,
+)
+from gtm_hit.calibration.views import BoardView, Floats, Grey, NotFound, Picture
+
+LOOKED_AT = 1280  # pixels, the longer side; corners are refined in the full picture
+SHARE = 2.5  # of the spacing: a window larger than this reaches the neighbouring corners
+LARGEST_WINDOW = 24  # pixels, half a side; more only costs time
+SMALLEST_SPACING = 6.0  # pixels between two points; below it they cannot be told to a fraction of a pixel
+OFF_GRID = 0.35  # of the spacing, median distance from a plane grid: the points were put together wrongly
+REFINE = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 100, 1e-4)
+
+
+def find_board(picture: Picture, board: Board, explain: bool = True) -> BoardView | NotFound:
+    """The board's points in the picture, or why none were found: a guess at once where not `explain`."""
+    grey = 255 - picture.grey if board.inverted else picture.grey
+    picture = replace(picture, grey=np.ascontiguousarray(grey))
+    if reason := why_unusable(picture):
+        return NotFound(picture.name, reason)
+    if board.kind is BoardKind.CHARUCO:
+        return _charuco(picture, board, explain)
+    look = _circles if board.has_circles else _chessboard
+    found = look(picture, board, explain)
+    if isinstance(found, NotFound):
+        return found
+    points = object_points(board)
+    return _checked(BoardView(picture.name, found, points, np.arange(len(points))), board)
+
+
+def _chessboard(picture: Picture, board: Board, explain: bool) -> Floats | NotFound:
+    small, scale = shrunk(picture.grey, LOOKED_AT)
+    corners = chessboard_corners(small, board.size)
+    if corners is None:
+        corners = largest_chessboard(small) if explain else None
+        if corners is None or board.size not in {corners.shape[1::-1], corners.shape[:2]}:
+            return why_squares(picture.name, small, board, corners)
+        if corners.shape[1::-1] != board.size:
+            corners = corners.transpose(1, 0, 2)
+    pixels = (corners.reshape(-1, 2) + 0.5) / scale - 0.5
+    spacing = grid_spacing(pixels, board.size)
+    return _refined(picture.grey, pixels, spacing / SHARE)
+
+
+def _circles(picture: Picture, board: Board, explain: bool) -> Floats | NotFound:
+    found = circle_centres(picture.grey, board.size, board.kind is BoardKind.ACIRCLES)
+    if found is not None:
+        return found
+    return why_circles(picture, board) if explain else why_briefly(picture, board)
+
+
+def _charuco(picture: Picture, board: Board, explain: bool) -> BoardView | NotFound:
+    detector = cv2.aruco.CharucoDetector(charuco(board))
+    corners, ids, _, markers = detector.detectBoard(picture.grey)
+    seen = 0 if ids is None else len(ids)
+    if seen < FEWEST_CORNERS:
+        found = 0 if markers is None else len(markers)
+        return why_markers(picture, board, seen, found) if explain else why_briefly(picture, board)
+    which = np.asarray(ids, dtype=np.int64).ravel()
+    points = object_points(board)[which]
+    if min(np.ptp(points[:, :2], axis=0)) < board.spacing / 2:
+        return NotFound(picture.name, "Only one line of the board's corners is seen; a plane is needed.")
+    pixels = np.asarray(corners, dtype=np.float64).reshape(-1, 2)
+    # Beyond the white rim around a marker the window would meet the marker's own corners.
+    window = _spacing_of(pixels, points, board) * min(1 / SHARE, (1 - board.marker) / 2)
+    if window >= 3:
+        pixels = _refined(picture.grey, pixels, window)
+    return _checked(BoardView(picture.name, pixels, points, which), board)
+
+
+def _refined(grey: Grey, pixels: Floats, window: float) -> Floats:
+    half = int(np.clip(window, 2, LARGEST_WINDOW))
+    corners = np.ascontiguousarray(pixels, dtype=np.float32).reshape(-1, 1, 2)
+    cv2.cornerSubPix(grey, corners, (half, half), (-1, -1), REFINE)
+    return corners.reshape(-1, 2).astype(np.float64)
+
+
+def _checked(view: BoardView, board: Board) -> BoardView | NotFound:
+    """Refuses what no picture of a plane board can be: points too close, or not on a grid."""
+    spacing = _spacing_of(view.pixels, view.points, board)
+    if spacing < SMALLEST_SPACING:
+        return NotFound(
+            view.name,
+            f"The board is too small in the picture: its points are {spacing:.1f} px apart. Hold it closer.",
+        )
+    homography, _ = cv2.findHomography(view.points[:, :2], view.pixels)
+    if homography is None:
+        return NotFound(view.name, "The points found lie on one line; a plane is needed.")
+    planar = cv2.perspectiveTransform(view.points[None, :, :2], homography)[0]
+    if np.median(np.linalg.norm(planar - view.pixels, axis=1)) > OFF_GRID * spacing:
+        return NotFound(view.name, "What was found does not lie on a grid; the board may be partly hidden.")
+    return view
+
+
+def _spacing_of(pixels: Floats, points: Floats, board: Board) -> float:
+    """Pixels between the two neighbouring points that are closest in the picture."""
+    apart = np.linalg.norm(points[:, None, :2] - points[None, :, :2], axis=2)
+    neighbours = (apart > 0) & (apart < board.spacing * 1.01)
+    if not neighbours.any():
+        return 0.0
+    seen = np.linalg.norm(pixels[:, None] - pixels[None], axis=2)
+    return float(seen[neighbours].min())
