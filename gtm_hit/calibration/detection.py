@@ -7,7 +7,8 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from gtm_hit.calibration.boards import FEWEST_CORNERS, Board, BoardKind, charuco, object_points
+from gtm_hit.calibration.boards import FEWEST_CORNERS, Board, BoardKind, object_points
+from gtm_hit.calibration.markers import detect, without_markers
 from gtm_hit.calibration.reasons import why_briefly, why_circles, why_markers, why_squares, why_unusable
 from gtm_hit.calibration.spotting import (
     chessboard_corners,
@@ -20,6 +21,7 @@ from gtm_hit.calibration.views import BoardView, Floats, Grey, NotFound, Picture
 
 LOOKED_AT = 1280  # pixels, the longer side; corners are refined in the full picture
 SHARE = 2.5  # of the spacing: a window larger than this reaches the neighbouring corners
+CHARUCO_SHARE = 0.3  # the same where markers were painted over
 LARGEST_WINDOW = 24  # pixels, half a side; more only costs time
 SMALLEST_SPACING = 6.0  # pixels between two points; below it they cannot be told to a fraction of a pixel
 OFF_GRID = 0.35  # of the spacing, median distance from a plane grid: the points were put together wrongly
@@ -64,22 +66,17 @@ def _circles(picture: Picture, board: Board, explain: bool) -> Floats | NotFound
 
 
 def _charuco(picture: Picture, board: Board, explain: bool) -> BoardView | NotFound:
-    detector = cv2.aruco.CharucoDetector(charuco(board))
-    corners, ids, _, markers = detector.detectBoard(picture.grey)
-    seen = 0 if ids is None else len(ids)
-    if seen < FEWEST_CORNERS:
-        found = 0 if markers is None else len(markers)
-        return why_markers(picture, board, seen, found) if explain else why_briefly(picture, board)
-    which = np.asarray(ids, dtype=np.int64).ravel()
-    points = object_points(board)[which]
+    seen = detect(picture.grey, board)
+    if len(seen.ids) < FEWEST_CORNERS:
+        if not explain:
+            return why_briefly(picture, board)
+        return why_markers(picture, board, len(seen.ids), len(seen.markers))
+    points = object_points(board)[seen.ids]
     if min(np.ptp(points[:, :2], axis=0)) < board.spacing / 2:
         return NotFound(picture.name, "Only one line of the board's corners is seen; a plane is needed.")
-    pixels = np.asarray(corners, dtype=np.float64).reshape(-1, 2)
-    # Beyond the white rim around a marker the window would meet the marker's own corners.
-    window = _spacing_of(pixels, points, board) * min(1 / SHARE, (1 - board.marker) / 2)
-    if window >= 3:
-        pixels = _refined(picture.grey, pixels, window)
-    return _checked(BoardView(picture.name, pixels, points, which), board)
+    clean = without_markers(picture.grey, seen.markers, board)
+    pixels = _refined(clean, seen.corners, _spacing_of(seen.corners, points, board) * CHARUCO_SHARE)
+    return _checked(BoardView(picture.name, pixels, points, seen.ids), board)
 
 
 def _refined(grey: Grey, pixels: Floats, window: float) -> Floats:

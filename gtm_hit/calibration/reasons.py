@@ -8,7 +8,8 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from gtm_hit.calibration.boards import DICTIONARIES, WHAT, Board, BoardKind, charuco, dictionary_of
+from gtm_hit.calibration.boards import DICTIONARIES, WHAT, Board, BoardKind, dictionary_of
+from gtm_hit.calibration.markers import detect
 from gtm_hit.calibration.spotting import chessboard_corners, circle_centres, circle_count, shrunk
 from gtm_hit.calibration.views import Floats, Grey, NotFound, Picture
 
@@ -187,8 +188,7 @@ def _other_prints(board: Board) -> Iterator[tuple[Board, str]]:
 
 
 def _corner_count(grey: Grey, board: Board) -> int:
-    ids = cv2.aruco.CharucoDetector(charuco(board)).detectBoard(grey)[1]
-    return 0 if ids is None else len(ids)
+    return len(detect(grey, board).ids)
 
 
 def _other_dictionary(grey: Grey, board: Board) -> str | None:

@@ -113,17 +113,11 @@ def _uncertain(solution: LensSolution) -> Reason | None:
     if focal <= LOOSE_FOCAL and centre <= LOOSE_CENTRE:
         return None
     severe = focal > WIDE_FOCAL or centre > WIDE_CENTRE
+    names, what = ("cx", "cy"), "The principal point"
     if focal / LOOSE_FOCAL >= centre / LOOSE_CENTRE:
-        which = (
-            f"fx = {numbers['fx']:.0f} ± {sigma['fx']:.1f}, fy = {numbers['fy']:.0f} ± {sigma['fy']:.1f} px"
-        )
-        what = "The focal length"
-    else:
-        which = (
-            f"cx = {numbers['cx']:.0f} ± {sigma['cx']:.1f}, cy = {numbers['cy']:.0f} ± {sigma['cy']:.1f} px"
-        )
-        what = "The principal point"
-    text = f"{what} is {'hardly' if severe else 'only roughly'} known: {which}."
+        names, what = ("fx", "fy"), "The focal length"
+    which = ", ".join(f"{name} = {numbers[name]:.0f} ± {sigma[name]:.1f}" for name in names)
+    text = f"{what} is {'hardly' if severe else 'only roughly'} known: {which} px."
     return Reason("uncertain", text, _more_tilts(solution), severe)
 
 
@@ -207,9 +201,8 @@ def _held(solution: LensSolution) -> Reason | None:
     if held <= HIGH_RMS or held <= HOLDOUT * solution.rms:
         return None
     text = f"Views it was solved without miss by {held:.2f} px, its own by {solution.rms:.2f} px."
-    return Reason(
-        "hold-out", text, "Take a model with fewer coefficients, or more views.", held > 4 * HIGH_RMS
-    )
+    step = "Take a model with fewer coefficients, or more views."
+    return Reason("hold-out", text, step, held > 4 * HIGH_RMS)
 
 
 def _aspect(solution: LensSolution) -> Reason | None:
@@ -233,9 +226,7 @@ def _fold(solution: LensSolution) -> Reason | None:
 
 def _fold_step(solution: LensSolution) -> str:
     if solution.model.coefficients is Coefficients.ONE:
-        return (
-            "Take a model with two coefficients or more, and views with the board in the picture's corners."
-        )
+        return "Take a model with at least two coefficients; add views with the board in the corners."
     return "Add views with the board in the picture's corners, or take fewer coefficients."
 
 
