@@ -48,9 +48,9 @@ class Extent:
     bottom: float
 
 
-def extent(board: Board) -> Extent:
-    """What has to be flat and in view, margin included."""
-    around = MARGIN * board.spacing
+def extent(board: Board, margin: float = MARGIN) -> Extent:
+    """What has to be flat and in view, with a margin in spacings."""
+    around = margin * board.spacing
     if board.has_circles:
         points, radius = object_points(board), dot_radius(board)
         (left, top), (right, bottom) = points[:, :2].min(0) - radius, points[:, :2].max(0) + radius

@@ -10,7 +10,13 @@ import numpy as np
 
 from gtm_hit.calibration.boards import DICTIONARIES, WHAT, Board, BoardKind, dictionary_of
 from gtm_hit.calibration.markers import detect
-from gtm_hit.calibration.spotting import chessboard_corners, circle_centres, circle_count, shrunk
+from gtm_hit.calibration.spotting import (
+    chessboard_corners,
+    circle_centres,
+    circle_count,
+    largest_chessboard,
+    shrunk,
+)
 from gtm_hit.calibration.views import Floats, Grey, NotFound, Picture
 
 LEAST_CONTRAST = 24  # grey levels between the darkest and the brightest hundredth
@@ -81,7 +87,7 @@ def why_briefly(picture: Picture, board: Board) -> NotFound:
 def why_squares(name: str, grey: Grey, board: Board, corners: Floats | None) -> NotFound:
     """Why no chessboard was found, given the largest grid that is seen."""
     if corners is None or corners.shape[0] * corners.shape[1] < FEWEST_SEEN:
-        return NotFound(name, _blurred(grey) or _nothing(board))
+        return NotFound(name, _blurred(grey) or _circles_instead(grey, board) or _nothing(board))
     rows, columns = corners.shape[:2]
     if (columns > rows) != (board.columns > board.rows):
         rows, columns, corners = columns, rows, corners.transpose(1, 0, 2)
@@ -99,6 +105,15 @@ def why_squares(name: str, grey: Grey, board: Board, corners: Floats | None) -> 
             "something may hide the others, or light blots them out.",
         )
     return NotFound(name, _other(board, columns, rows), (columns, rows))
+
+
+def _circles_instead(grey: Grey, board: Board) -> str | None:
+    shifted = [circle_centres(grey, board.size, shifted) is not None for shifted in (False, True)]
+    return (
+        f"These are circles: say {BoardKind.ACIRCLES if shifted[1] else BoardKind.CIRCLES}."
+        if any(shifted)
+        else None
+    )
 
 
 def _other(board: Board, columns: int, rows: int) -> str:
@@ -129,7 +144,7 @@ def why_circles(picture: Picture, board: Board) -> NotFound:
     for columns, rows in _neighbours(board):
         if circle_centres(grey, (columns, rows), board.kind is BoardKind.ACIRCLES) is not None:
             return NotFound(picture.name, _other(board, columns, rows), (columns, rows))
-    if reason := _blurred(grey):
+    if reason := _blurred(grey) or _chessboard_instead(grey):
         return NotFound(picture.name, reason)
     seen, wanted = circle_count(grey), board.columns * board.rows
     if seen < wanted:
@@ -142,6 +157,14 @@ def why_circles(picture: Picture, board: Board) -> NotFound:
     if circle_centres(grey, (board.columns, board.rows), other is BoardKind.ACIRCLES) is not None:
         return NotFound(picture.name, f"The circles fit a board of the kind {other}, not {board.kind}.")
     return NotFound(picture.name, _nothing(board))
+
+
+def _chessboard_instead(grey: Grey) -> str | None:
+    corners = largest_chessboard(shrunk(grey, 960)[0])
+    if corners is None or corners.shape[0] * corners.shape[1] < FEWEST_SEEN:
+        return None
+    rows, columns = sorted(corners.shape[:2])
+    return f"This looks like a chessboard, of {columns}×{rows} inner corners."
 
 
 def _neighbours(board: Board) -> Iterator[tuple[int, int]]:
@@ -168,7 +191,7 @@ def why_markers(picture: Picture, board: Board, corners: int, markers: int) -> N
     if markers == 0:
         if dictionary := _other_dictionary(grey, board):
             return NotFound(name, f"The markers in this picture are of {dictionary}, not {board.dictionary}.")
-        reason = _blurred(grey) or f"No marker of {board.dictionary} is seen."
+        reason = _blurred(grey) or _chessboard_instead(grey) or f"No marker of {board.dictionary} is seen."
         return NotFound(name, reason)
     return NotFound(
         name,

@@ -29,6 +29,13 @@ class Searched:
         size, count = min(fits.items(), key=lambda item: (-item[1], item[0]))
         return size if count > len(self.views) else None
 
+    def by_reason(self) -> list[tuple[str, list[str]]]:
+        """Names of the pictures without a board by what was the matter; the most frequent first."""
+        names: dict[str, list[str]] = {}
+        for each in self.missing:
+            names.setdefault(each.reason, []).append(each.name)
+        return sorted(names.items(), key=lambda item: -len(item[1]))
+
 
 def search(
     pictures: Iterable[Picture | NotFound], board: Board, progress: Progress | None = None

@@ -244,7 +244,7 @@ def _sharper(
     ok, pixels = capture.retrieve()
     if not ok:
         return best
-    picture = Picture(f"frame {number:06d}", as_grey(pixels))
+    picture = Picture(f"frame-{number:06d}", as_grey(pixels))
     sharp = sharpness(shrunk(picture.grey, 960)[0])
     return (picture, sharp) if best is None or sharp > best[1] else best
 
