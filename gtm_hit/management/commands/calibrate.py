@@ -5,9 +5,10 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
+from gtm_hit.management.calibrating import lens
 from gtm_hit.management.calibrating.step import Step
 
-STEPS: dict[str, Step] = {}
+STEPS: dict[str, Step] = {"lens": lens}
 
 
 class Command(BaseCommand):
