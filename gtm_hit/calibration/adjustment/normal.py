@@ -137,7 +137,7 @@ def _eliminated(normal: Normal, inverse: Floats) -> Iterator[tuple[Floats, Float
     mixed = normal.mixed[:, columns] @ halves[seen.points]
     towards = (np.swapaxes(halves, 1, 2) @ normal.point_slopes[..., None])[..., 0]
     views, width = len(normal.free), len(columns)
-    together = max(1, BLOCK_BYTES // (views * width * 3 * 8))
+    together = max(1, BLOCK_BYTES // max(1, views * width * 3 * 8))
     place = np.cumsum(normal.movable) - 1
     moves = normal.movable[seen.points]
     for start in range(0, movable.size, together):
@@ -146,4 +146,4 @@ def _eliminated(normal: Normal, inverse: Floats) -> Iterator[tuple[Floats, Float
         across = np.zeros((views, width, block.size, 3))
         # Advanced places around a slice: numpy puts them first, as `mixed` has them.
         across[seen.cameras[rows], :, place[seen.points[rows]] - start] = mixed[rows]
-        yield across.reshape(views * width, -1)[free], towards[block].ravel()
+        yield across.reshape(views * width, 3 * block.size)[free], towards[block].ravel()

@@ -53,7 +53,7 @@ class Problem:
     measured : (M, 3) measured points
     measured_sigma : how far they may be off; 0 keeps them exactly where they are
     weights : (N,) how much each observation of a free point counts; 0 leaves it out. None: all count 1
-    feet : (P,) which free points are feet on the ground, for the report only; None: nobody knows
+    feet : (P,) which free points are feet on the ground, for the report only; None: to be guessed
     """
 
     views: tuple[View, ...]
@@ -81,12 +81,14 @@ def problem_of(file: BaProblem, size: tuple[int, int], names: tuple[str, ...] | 
         file.seen,
         file.fixed_points,
         file.fixed_seen,
-        feet=feet_of_pairs(file.points),
     )
 
 
 def file_of(problem: Problem, views: tuple[View, ...], points: Floats) -> BaProblem:
-    """The file of a problem with the views and points that were found. Lenses of five numbers only."""
+    """The file of a problem with the views and points that were found; points left out stay as they were.
+
+    ValueError for lenses of more than five numbers.
+    """
     rows = []
     for view in views:
         if view.lens.distortion.size != 5:
@@ -95,7 +97,8 @@ def file_of(problem: Problem, views: tuple[View, ...], points: Floats) -> BaProb
         middle = (matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2])
         rows.append([*view.rvec, *view.tvec, *middle, *view.lens.distortion])
     cameras = np.array(rows, dtype=np.float64)
-    return BaProblem(cameras, points, problem.measured, problem.seen, problem.measured_seen)
+    kept = np.nan_to_num(np.where(np.isnan(points), problem.points, points))
+    return BaProblem(cameras, kept, problem.measured, problem.seen, problem.measured_seen)
 
 
 def feet_of_pairs(points: Floats) -> NDArray[np.bool_]:

@@ -61,8 +61,7 @@ def rays(rows: Floats, seen: Seen) -> tuple[Floats, Floats]:
 def meeting(directions: Floats, centres: Floats, seen: Seen, count: int) -> tuple[Floats, Flags]:
     """Points (P, 3) nearest to the rays (N, 3) from centres (N, 3) that see them, and which there are."""
     across = np.eye(3) - directions[:, :, None] * directions[:, None, :]
-    usable: Flags = np.isfinite(directions).all(axis=1)
-    across = np.where(usable[:, None, None], across, 0.0)
+    across[~np.isfinite(directions).all(axis=1)] = 0.0
     total, towards = np.zeros((count, 3, 3)), np.zeros((count, 3))
     np.add.at(total, seen.points, across)
     np.add.at(towards, seen.points, (across @ centres[..., None])[..., 0])
