@@ -14,7 +14,7 @@ from gtm_hit.calibration.pose_robust import USUAL_WIDTH, Agreement, outlying
 from gtm_hit.calibration.pose_values import Finding, Trouble
 
 ENOUGH = 8  # pairs: 4 are off by metres now and then, 8 by 4 cm
-SMALL_HULL = 0.05  # of the picture
+SMALL_HULL = 0.03  # of the picture
 LOW, HIGH = 0.3, 80.0  # metres above the ground at which hardly any camera stands
 NEARLY = 0.5  # a second pose this much worse at most, relatively, is worth telling
 APART = 0.25  # metres between two centres worth telling
