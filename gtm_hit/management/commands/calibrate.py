@@ -5,12 +5,14 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
-from gtm_hit.management.calibrating import adjust, lens
+from gtm_hit.management.calibrating import adjust, ground, lens, undistort
 from gtm_hit.management.calibrating.step import Step
 
 STEPS: dict[str, Step] = {
     "lens": lens,
+    "ground": ground,
     "adjust": adjust,
+    "undistort": undistort,
 }
 
 
