@@ -216,7 +216,7 @@ class Migration(migrations.Migration):
                 (
                     "follows",
                     models.PositiveIntegerField(
-                        help_text="number of the page's step before it; 0: it was the first"
+                        help_text="number of the page's step before it; 0: none"
                     ),
                 ),
                 (
