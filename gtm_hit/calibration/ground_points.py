@@ -97,8 +97,8 @@ def same_places(points: Sequence[GroundPoint]) -> Iterator[tuple[int, int]]:
 def doubts(points: Sequence[GroundPoint], unit: str) -> list[str]:
     """Sentences about what looks wrong: the unit, a single point's unit, a point beside its grid."""
     places = np.array([point.place for point in points], dtype=np.float64).reshape(-1, 3)
-    whole = list(_whole_unit(places, unit))
-    return whole or [*_strange_units(points, places), *_beside_the_grid(points, places, unit)]
+    units = list(_strange_units(points, places)) or list(_whole_unit(places, unit))
+    return [*units, *_beside_the_grid(points, places, unit)]
 
 
 def _whole_unit(places: Floats, unit: str) -> Iterator[str]:
@@ -120,7 +120,7 @@ def _strange_units(points: Sequence[GroundPoint], places: Floats) -> Iterator[st
             return
         usual = float(np.sort(others)[-max(1, len(others) // 4) :].mean())
         for factor, word in ((100.0, "centimetres"), (1000.0, "millimetres")):
-            if usual > 0 and sizes[index] > 10 * usual and sizes[index] / factor <= 1.5 * usual:
+            if usual > 0 and sizes[index] > 10 * usual and sizes[index] / factor <= 2 * usual:
                 yield f"Point {point.name} looks like {word} among points in larger units."
                 break
 

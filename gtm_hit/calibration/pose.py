@@ -50,7 +50,7 @@ def solve_pose(lens: Lens, pairs: Sequence[Pair]) -> PoseSolution:
         raise PoseError(_why_none(sights.of(known)))
     used = known.copy()
     used[known] = found.agree
-    findings = findings_of(sights, names, found.pose, known, used)
+    findings = findings_of(sights, names, found, known)
     return PoseSolution(
         found.pose.rvec,
         found.pose.tvec,

@@ -80,7 +80,7 @@ def poses(sights: Sights, ground: bool = True) -> list[Pose]:
 
 
 def candidates(sights: Sights, flat: bool) -> Iterator[tuple[Floats, Floats]]:
-    """Poses of the closed forms, unrefined, on pixels without lens; `flat` says that the points are a plane."""
+    """Poses of the closed forms, unrefined, on pixels without lens; `flat`: all points are in one plane."""
     methods = [cv2.SOLVEPNP_SQPNP]
     if flat:
         methods.append(cv2.SOLVEPNP_IPPE)  # gives both poses from which a plane looks alike
@@ -104,7 +104,7 @@ def refined(sights: Sights, rvec: Floats, tvec: Floats) -> Pose | None:
     for _ in range(LM_STEPS):
         if not np.isfinite(cost) or cost > 1e30:
             return None
-        ahead: Floats = pose + _step(jacobian, misses, damping)
+        ahead = np.add(pose, _step(jacobian, misses, damping), dtype=np.float64)
         tried, tried_jacobian = _misses(sights, ahead)
         new = float(tried @ tried)
         if not new < cost:
@@ -131,8 +131,7 @@ def covariance_of(sights: Sights, pose: Pose, least_sigma: float) -> Floats:
     misses, jacobian = _misses(sights, np.concatenate((pose.rvec, pose.tvec)))
     spare = max(len(misses) - 6, 1)
     variance = max(float(misses @ misses) / spare, least_sigma**2)
-    covariance: Floats = variance * np.linalg.pinv(jacobian.T @ jacobian)
-    return covariance
+    return np.asarray(variance * np.linalg.pinv(jacobian.T @ jacobian), dtype=np.float64)
 
 
 def projection(lens: Lens, rvec: Floats, tvec: Floats, points: Floats) -> tuple[Floats, Floats]:

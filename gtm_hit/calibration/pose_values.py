@@ -38,6 +38,7 @@ class Trouble(StrEnum):
     OUTLIER = "outlier"  # a pair that contradicts the others, nobody knows how
     SWAPPED = "swapped"  # two clicks exchanged
     COORDINATE = "coordinate"  # one typed number is wrong
+    LENS = "lens"  # the pairs agree too badly for the lens to be right
     CLICK = "click"  # the click lies on another measured point
     UNIT = "unit"  # lengths in another unit than was said
     FOLD = "fold"  # the lens has no answer where the click is

@@ -5,9 +5,13 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
+from gtm_hit.management.calibrating import ground, undistort
 from gtm_hit.management.calibrating.step import Step
 
-STEPS: dict[str, Step] = {}
+STEPS: dict[str, Step] = {
+    "ground": ground,
+    "undistort": undistort,
+}
 
 
 class Command(BaseCommand):

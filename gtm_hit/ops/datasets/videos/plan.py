@@ -99,7 +99,7 @@ def _check_calibration(
     names = list(dict.fromkeys(source.camera for source in sources))
     files = find_calibrations(DatasetFolder(options.folder, problems), names, options.calibrations)
     sizes = {name: (each.width, each.height) for name, each in facts.items()}
-    views = read_views(files, names, sizes, options.unit, options.undistort, problems)
+    views = read_views(files, names, sizes, options.unit, options.undistort, problems, options.alpha)
     cameras = [view.camera for view in views]
     for camera in cameras:
         _tell_other_size(camera, problems)
