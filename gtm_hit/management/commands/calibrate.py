@@ -5,10 +5,11 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
-from gtm_hit.management.calibrating import ground, undistort
+from gtm_hit.management.calibrating import ground, lens, undistort
 from gtm_hit.management.calibrating.step import Step
 
 STEPS: dict[str, Step] = {
+    "lens": lens,
     "ground": ground,
     "undistort": undistort,
 }
