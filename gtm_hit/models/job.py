@@ -27,6 +27,7 @@ class Job(models.Model):
         STITCH = "stitch", "stitching into ground truth"
         SEND_OUTBOX = "send_outbox", "messages to a platform"
         PROPOSE = "propose", "proposals of people"
+        SOLVE_LENS = "solve_lens", "lens from pictures of a board"
 
     dataset = models.ForeignKey(
         Dataset,
