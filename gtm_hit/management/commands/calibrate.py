@@ -5,9 +5,12 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
+from gtm_hit.management.calibrating import sync
 from gtm_hit.management.calibrating.step import Step
 
-STEPS: dict[str, Step] = {}
+STEPS: dict[str, Step] = {
+    "sync": sync,
+}
 
 
 class Command(BaseCommand):
