@@ -23,6 +23,8 @@ from gtm_hit.ops.proposals import job as proposal_job
 from gtm_hit.ops.releases import releasing
 from gtm_hit.ops.scores import computing
 from gtm_hit.ops.stitching import running as stitching
+from gtm_hit.ops.sync import job as sync_job
+from gtm_hit.ops.sync import pictures as video_pictures
 from gtm_hit.ops.work import assignments
 
 OPERATIONS: dict[str, queue.Operation] = {
@@ -34,6 +36,7 @@ OPERATIONS: dict[str, queue.Operation] = {
     Job.Kind.PROPOSE: proposal_job.run,
     Job.Kind.REPLACE_CALIBRATION: calibration_job.run,
     Job.Kind.STITCH: stitching.run,
+    Job.Kind.SYNC_VIDEOS: sync_job.run,
     Job.Kind.SEND_OUTBOX: partial(sending.run, connect=connect),
 }
 
@@ -59,6 +62,7 @@ def expire_exports() -> None:
 @shared_task
 def remove_unused_pictures() -> None:
     picture_cleanup.remove_unused_pictures(timezone.now())
+    video_pictures.remove_old(timezone.now())
 
 
 @shared_task

@@ -5,7 +5,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
-from gtm_hit.management.calibrating import adjust, ground, lens, undistort
+from gtm_hit.management.calibrating import adjust, ground, lens, sync, undistort
 from gtm_hit.management.calibrating.step import Step
 
 STEPS: dict[str, Step] = {
@@ -13,6 +13,7 @@ STEPS: dict[str, Step] = {
     "ground": ground,
     "adjust": adjust,
     "undistort": undistort,
+    "sync": sync,
 }
 
 
