@@ -1,12 +1,12 @@
 """How well a rough click is put right: `python -m benchmarks.snap [--data FOLDER] [--detector FILE]`.
 
 Everybody annotated is marked 20 to 40 cm off, in a direction drawn with a seed, and snapped: with all others
-marked where they stand, and as the first one marked in the frame, when the proposals explain the others' boxes
-and when nobody does. FOLDER holds `multiviewx` as in the published sample; the demo scene, which the project
+marked where they stand, and as the first one marked in the frame, when proposals explain the others' boxes and
+when nobody does. FOLDER holds `multiviewx` as in the published sample; the demo scene, which the project
 renders itself, is always scored. Heights are not told. Foregrounds are those a run keeps.
 
-The outline and the weight of the foreground were chosen on MultiviewX's frames 0-2 and the demo scene's frames
-0-4, looking at 30 settings. The detector and the fit had been tuned on MultiviewX's frames 0-4 and the demo
+The outline and the weight of the foreground were chosen on MultiviewX's frames 0-2 and the demo scene's
+frames 0-4, looking at 30 settings. The detector and the fit had been tuned on MultiviewX's frames 0-4 and the demo
 scene's frames 0-4 (see benchmarks.proposals). Nothing was tuned on the demo scene's frames 5-9.
 """
 
@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from benchmarks.proposals import FRAMES, ROOT, Example, Kept, demo, multiviewx, run
 from gtm_hit.vision import detectors
 from gtm_hit.vision.background import Backgrounds
-from gtm_hit.vision.masks import packed, unpacked
+from gtm_hit.vision.masks import Notes, packed, unpacked
 from gtm_hit.vision.proposing import Method, Settings
 from gtm_hit.vision.snap import USUAL, Marks, SnapSettings, snap
 
@@ -91,13 +91,13 @@ def measured(
 
 def seen_in(example: Example) -> list[dict[str, NDArray]]:
     """Foregrounds of all frames as a run keeps them."""
-    known = Backgrounds.learn(example.frames[:FRAMES], example.scene.cameras).cameras
-    return [
-        unpacked(
-            packed({name: known[name].foreground(each) for name, each in frame.items() if name in known})
-        )
-        for frame in example.frames
-    ]
+    notes = Notes(Backgrounds.learn(example.frames[:FRAMES], example.scene.cameras))
+    kept = []
+    for frame in example.frames:
+        for name, each in notes.backgrounds.cameras.items():
+            each.foreground(frame[name])
+        kept.append(unpacked(packed(notes.take())))
+    return kept
 
 
 def proposed_in(example: Example, kept: Kept) -> list[NDArray]:

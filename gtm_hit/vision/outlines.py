@@ -55,8 +55,9 @@ FOUND = 10.0  # what a view must say for somebody, or it says nothing: who stand
 
 
 def agreement(mask: Mask, camera: Camera, bodies: Floats, others: Floats) -> Floats:
-    """How much likelier the mask is with each of the bodies (N, 3) than without, beside the others (M, 3): the
-    sum of logarithms, (N,); all 0 where it shows none of them.
+    """How much likelier the mask is with each of the bodies (N, 3) than without, beside the others (M, 3).
+
+    The sum of logarithms, (N,); all 0 where it shows none of them.
     """
     scale = mask.shape[1] / camera.width
     at, seen = _cells(camera, bodies, scale)
