@@ -19,6 +19,7 @@ from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.layers import job as annotation_job
 from gtm_hit.ops.layers import unfinished
 from gtm_hit.ops.outbox import sending
+from gtm_hit.ops.proposals import foregrounds
 from gtm_hit.ops.proposals import job as proposal_job
 from gtm_hit.ops.releases import releasing
 from gtm_hit.ops.scores import computing
@@ -63,6 +64,7 @@ def expire_exports() -> None:
 def remove_unused_pictures() -> None:
     picture_cleanup.remove_unused_pictures(timezone.now())
     video_pictures.remove_old(timezone.now())
+    foregrounds.sweep()
 
 
 @shared_task
