@@ -1,13 +1,13 @@
 """How well a rough click is put right: `python -m benchmarks.snap [--data FOLDER] [--detector FILE]`.
 
 Everybody annotated is marked 20 to 40 cm off, in a direction drawn with a seed, and snapped: with all others
-marked where they stand, and as the first one marked in the frame, when proposals explain the others' boxes and
-when nobody does. FOLDER holds `multiviewx` as in the published sample; the demo scene, which the project
+marked where they stand, and as the first one marked in the frame, when proposals explain the others' boxes
+and when nobody does. FOLDER holds `multiviewx` as in the published sample; the demo scene, which the project
 renders itself, is always scored. Heights are not told. Foregrounds are those a run keeps.
 
 The outline and the weight of the foreground were chosen on MultiviewX's frames 0-2 and the demo scene's
-frames 0-4, looking at 30 settings. The detector and the fit had been tuned on MultiviewX's frames 0-4 and the demo
-scene's frames 0-4 (see benchmarks.proposals). Nothing was tuned on the demo scene's frames 5-9.
+frames 0-4, looking at 30 settings. The detector and the fit had been tuned on MultiviewX's frames 0-4 and the
+demo scene's frames 0-4 (see benchmarks.proposals). Nothing was tuned on the demo scene's frames 5-9.
 """
 
 from __future__ import annotations
