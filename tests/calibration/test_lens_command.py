@@ -95,3 +95,17 @@ def test_a_process_refuses_without_a_traceback(tmp_path: Path) -> None:
     done = process(str(tmp_path / "nowhere"), *BOARD)
     assert done.returncode == 1
     assert "is not there" in done.stderr and "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(("name", "start"), [("b.pdf", b"%PDF-1.4"), ("b.svg", b"<svg")])
+def test_a_board_to_print_is_written(tmp_path: Path, name: str, start: bytes) -> None:
+    out = StringIO()
+    call_command("calibrate", "board", str(tmp_path / name), *BOARD, stdout=out)
+    assert (tmp_path / name).read_bytes().startswith(start)
+    assert "sheet A3" in out.getvalue()
+
+
+def test_a_board_is_written_as_pdf_or_svg_only(tmp_path: Path) -> None:
+    with pytest.raises(CommandError, match=r"\.pdf or \.svg"):
+        call_command("calibrate", "board", str(tmp_path / "b.docx"), *BOARD)
+    assert list(tmp_path.iterdir()) == []

@@ -5,10 +5,13 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
-from gtm_hit.management.calibrating import lens
+from gtm_hit.management.calibrating import board, lens
 from gtm_hit.management.calibrating.step import Step
 
-STEPS: dict[str, Step] = {"lens": lens}
+STEPS: dict[str, Step] = {
+    "board": board,
+    "lens": lens,
+}
 
 
 class Command(BaseCommand):
