@@ -68,6 +68,20 @@ def _chessboard(picture: Picture, board: Board, explain: bool) -> Floats | NotFo
     return _refined(picture.grey, pixels, spacing, SHARE)
 
 
+def larger_board(picture: Picture, board: Board) -> tuple[int, int] | None:
+    """Columns and rows of the chessboard of which `board` may be a part only."""
+    if board.kind is not BoardKind.CHESSBOARD:
+        return None
+    small, _ = shrunk(255 - picture.grey if board.inverted else picture.grey, LOOKED_AT)
+    corners = largest_chessboard(small)
+    if corners is None:
+        return None
+    size = (corners.shape[1], corners.shape[0])
+    size = size if (size[0] > size[1]) == (board.columns > board.rows) else size[::-1]
+    wider = size[0] >= board.columns and size[1] >= board.rows and size != board.size
+    return size if wider and chessboard_corners(small, size) is not None else None
+
+
 def _circles(picture: Picture, board: Board, explain: bool) -> Floats | NotFound:
     found = circle_centres(picture.grey, board.size, board.kind is BoardKind.ACIRCLES)
     if found is not None:

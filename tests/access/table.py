@@ -275,6 +275,7 @@ WITHOUT_TOKEN = {
 # `operator`: whoever may run commands may do it. `acts as`: in a named person's name, whose role counts.
 COMMANDS = {
     "agreement": "operator",
+    "calibrate": "operator",
     "campaign": "operator",
     "campaignlink": "operator",
     "campaignworker": "operator",

@@ -68,6 +68,7 @@ def run(options: dict[str, Any], say: Say) -> dict[str, Any]:
         _introduce(board, source, say)
         found = search(source.read(), board, _progress(source.count, say))
         _tell_missing(found, say)
+        _tell_larger(found, say)
         views = _chosen(found, source, options, say)
         model = LensModel(options["model"], options["fixed_centre"], options["fixed_aspect"])
         solution = solve_lens(views, source.size, model)
@@ -76,8 +77,8 @@ def run(options: dict[str, Any], say: Say) -> dict[str, Any]:
     verdict = judge(solution)
     _tell(solution, verdict, say)
     counted = {"found": len(found.views), "pictures": len(found.views) + len(found.missing)}
-    missing = {"missing": missing_report(found.missing), "notes": list(source.notes)}
-    return {"board": board.as_json(), **counted, **lens_report(solution, verdict), **missing}
+    rest = {"missing": missing_report(found.missing), "larger": found.larger, "notes": list(source.notes)}
+    return {"board": board.as_json(), **counted, **lens_report(solution, verdict), **rest}
 
 
 def _introduce(board: Board, source: Source, say: Say) -> None:
@@ -101,6 +102,12 @@ def _tell_missing(found: Searched, say: Say) -> None:
         shown = ", ".join(names[:SHOWN])
         more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
         say(f"  {shown}{more}: {reason}")
+
+
+def _tell_larger(found: Searched, say: Say) -> None:
+    if found.larger:
+        columns, rows = found.larger
+        say(f"Note: the board seems to have {columns}×{rows} inner corners, of which only a part is used.")
 
 
 def _chosen(found: Searched, source: Source, options: dict[str, Any], say: Say) -> list[BoardView]:
