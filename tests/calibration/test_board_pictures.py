@@ -71,3 +71,10 @@ def test_an_inverted_board_is_white_on_black() -> None:
     middle = np.s_[170:230, 240:360]
     assert (bright[middle].astype(int) + dark[middle] == 260).all()
     assert set(np.unique(bright[middle])) >= {35, 225}
+
+
+def test_a_board_can_be_drawn_into_a_picture_in_colours() -> None:
+    grey, colours = np.full((400, 640), 80, np.float32), np.full((400, 640, 3), 80, np.float32)
+    draw_board(grey, LENS, CHESS, straight())
+    draw_board(colours, LENS, CHESS, straight())
+    assert all(np.array_equal(colours[:, :, channel], grey) for channel in range(3))

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from django.core.management import CommandError, call_command
 
-from tests.calibration.board_scene import LENS, write_pictures
+from tests.calibration.board_scene import LENS, drawn, write_pictures
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 BOARD = ("--board", "chessboard", "--size", "8x5", "--spacing", "0.03")
@@ -66,6 +66,23 @@ def test_a_view_can_be_left_out_and_a_model_chosen(tmp_path: Path) -> None:
     assert [view["name"] for view in told["views"]] == [f"{n:02d}.png" for n in (0, 1, 2, 4, 5, 6, 7)]
     assert told["distortion"][2:] == [0, 0, 0]
     assert told["model"]["coefficients"] == "two"
+
+
+def test_a_video_is_a_source_like_a_folder(tmp_path: Path) -> None:
+    video = cv2.VideoWriter(
+        str(tmp_path / "v.avi"),
+        cv2.CAP_FFMPEG,
+        cv2.VideoWriter.fourcc(*"MJPG"),
+        10,
+        (LENS.width, LENS.height),
+    )
+    for _, grey in drawn("chessboard", 12):
+        video.write(cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR))
+    video.release()
+    told, _ = run(str(tmp_path / "v.avi"), *BOARD, "--frames", "6")
+    assert told["found"] == told["pictures"] == 6
+    assert told["views"][0]["name"].startswith("frame-0000")
+    assert told["rms"] < 0.1
 
 
 def test_of_many_views_the_most_useful_are_solved(tmp_path: Path) -> None:
