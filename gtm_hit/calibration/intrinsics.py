@@ -22,6 +22,12 @@ WORST = 50.0  # pixels RMS: more is no solution, whatever OpenCV calls it
 STOP = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 100, 1e-9)
 
 
+NOTHING_TOLD = (
+    "No lens explains these views. Check the board's size and kind, and that all pictures come "
+    "from one camera with one zoom; views that all look at the board straight on do not tell a lens."
+)
+
+
 class LensError(GeometryError):
     """Views no lens can be told from; says why."""
 
@@ -98,7 +104,12 @@ def solve_lens(
         )
     _check_finite(views)
     start, poses = _started(views, size, model)
-    refined = refine(views, start, poses, model)
+    try:
+        refined = refine(views, start, poses, model)
+    except np.linalg.LinAlgError as error:
+        raise LensError(NOTHING_TOLD) from error
+    if not np.isfinite(list(refined.sigma.values())).all():
+        raise LensError(NOTHING_TOLD)
     solved = tuple(_placed(view, refined.lens, pose) for view, pose in zip(views, refined.poses, strict=True))
     rms = _rms([view.residuals for view in solved])
     held = _holdout(views, refined, model) if holdout else None
@@ -121,10 +132,7 @@ def _started(views: Sequence[BoardView], size: tuple[int, int], model: LensModel
         if best and best[0] < WORST / 10:
             break
     if best is None or best[0] > WORST:
-        raise LensError(
-            "No lens explains these views. Check the board's size and kind, and that all pictures come "
-            "from one camera with one zoom; views that all look at the board straight on do not tell a lens."
-        )
+        raise LensError(NOTHING_TOLD)
     return best[1:]
 
 
@@ -195,7 +203,10 @@ def _holdout(views: Sequence[BoardView], refined: Refined, model: LensModel) -> 
     residuals: list[Floats] = []
     for fold in range(folds):
         rest = [index for index in range(len(views)) if index % folds != fold]
-        other = refine([views[index] for index in rest], refined.lens, refined.poses[rest], model).lens
+        try:
+            other = refine([views[index] for index in rest], refined.lens, refined.poses[rest], model).lens
+        except np.linalg.LinAlgError:
+            return None
         for view in views[fold::folds]:
             posed = _posed(view, other)
             if posed is None:

@@ -19,6 +19,7 @@ from gtm_hit.calibration.views import BoardView, Floats
 STEPS = 100
 ENOUGH = 1e-10  # relative drop of the cost
 STIFFEST = 1e10
+UNTOLD = 1e-14  # share of a parameter's information that is left beside the poses: rounding errors
 COLUMNS = len(NAMES)
 
 
@@ -43,7 +44,7 @@ class _System:
 
 
 def refine(views: Sequence[BoardView], lens: Lens, poses: Floats, model: LensModel) -> Refined:
-    """The optimum next to a start, and how sure its numbers are."""
+    """The optimum next to a start, and how sure its numbers are. LinAlgError where nothing tells them."""
     chooser = _chooser(model)
     system = _system(views, lens, poses, chooser)
     damping = 1e-4
@@ -120,9 +121,11 @@ def _reduced(system: _System, damping: float) -> tuple[Floats, Floats, Floats]:
 def _step(system: _System, damping: float) -> tuple[Floats, Floats] | None:
     try:
         matrix, right, inverse = _reduced(system, damping)
+        if not (np.diag(matrix) > 0).all():
+            return None
         scale = 1 / np.sqrt(np.diag(matrix))
         lens_step = scale * np.linalg.solve(matrix * np.outer(scale, scale), scale * right)
-    except (np.linalg.LinAlgError, FloatingPointError):
+    except np.linalg.LinAlgError:
         return None
     rest = system.own_right - np.einsum("vpi,p->vi", system.between, lens_step)
     pose_steps = np.einsum("vij,vj->vi", inverse, rest)
@@ -151,7 +154,9 @@ def _sigma(views: Sequence[BoardView], system: _System, model: LensModel) -> dic
     count = 2 * sum(len(view.pixels) for view in views)
     free = max(1, count - system.shared.shape[0] - 6 * len(views))
     matrix, _, _ = _reduced(system, 0.0)
-    scale = 1 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    if not (np.diag(matrix) > UNTOLD * np.diag(system.shared)).all():
+        raise np.linalg.LinAlgError("poses explain all that a parameter of the lens could")
+    scale = 1 / np.sqrt(np.diag(matrix))
     covariance = np.linalg.pinv(matrix * np.outer(scale, scale)) * np.outer(scale, scale)
     moved = _chooser(model) @ covariance @ _chooser(model).T
     spread = np.sqrt(np.maximum(np.diag(moved), 0) * system.cost / free)

@@ -10,6 +10,7 @@ import pytest
 from gtm_hit.calibration.intrinsics import LensError, fold_reach, solve_lens
 from gtm_hit.calibration.lens_models import Coefficients, LensModel
 from gtm_hit.calibration.lens_numbers import Lens
+from gtm_hit.calibration.verdict import Word, judge
 from gtm_hit.calibration.views import BoardView
 from gtm_hit.demo.boards import Placement, placements
 from tests.calibration.board_scene import CHESS, KINDS, LENS, SIZE, exact_view, views
@@ -109,8 +110,6 @@ def test_a_point_that_is_not_finite_is_refused() -> None:
 def test_views_that_are_all_straight_on_give_no_lens_that_is_trusted() -> None:
     placed = [Placement(np.zeros(3), np.array([-0.1, -0.06, 0.4 + 0.05 * step])) for step in range(8)]
     seen = [exact_view(f"{number}", placement, noise=0.2) for number, placement in enumerate(placed)]
-    from gtm_hit.calibration.verdict import Word, judge
-
     try:
         found = solve_lens(seen, SIZE)
     except LensError:
@@ -123,3 +122,17 @@ def test_a_lens_that_folds_inside_the_picture_is_known_by_its_reach() -> None:
     assert fold_reach(Lens(*SIZE, LENS.matrix, np.zeros(5))) == np.inf
     folding = Lens(*SIZE, LENS.matrix, np.array([-0.6, 0.0, 0.0, 0.0, 0.0]))
     assert 0.5 < fold_reach(folding) < 1
+
+
+@pytest.mark.parametrize("kept", [slice(0, 8), [0, 7, 32, 39]], ids=["one line", "four points"])
+def test_points_that_tell_no_lens_give_none_that_is_trusted(kept: slice | list[int]) -> None:
+    few = [
+        replace(view, pixels=view.pixels[kept], points=view.points[kept], ids=view.ids[kept])
+        for view in exact(5, noise=0.2)
+    ]
+    try:
+        found = solve_lens(few, SIZE)
+    except LensError:
+        return
+    assert np.isfinite(list(found.sigma.values())).all()
+    assert judge(found).word is not Word.GOOD

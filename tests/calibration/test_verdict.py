@@ -118,6 +118,22 @@ def test_a_bad_view_is_named_and_the_next_step_is_to_switch_it_off() -> None:
     assert outlier(rest) is None and rest.rms < solution.rms / 3
 
 
+def test_views_of_two_zooms_are_not_good_though_a_lens_between_them_fits_half_a_pixel() -> None:
+    one = seen(12, noise=0.2)
+    mixed = [*one[:7], *[replace(view, pixels=view.pixels * 1.4 - 100) for view in one[7:]]]
+    solution = solve_lens(mixed, SIZE)
+    assert solution.rms < 0.6
+    assert judge(solution).word is not Word.GOOD
+
+
+def test_many_views_that_do_not_agree_on_one_lens_are_sent_to_look_at_the_zoom(
+    solution: LensSolution,
+) -> None:
+    verdict = judge(replace(solution, rms=0.3, holdout_rms=0.45))
+    assert (verdict.word, verdict.reasons[0].code) == (Word.USABLE, "hold-out")
+    assert "zoom" in verdict.next_step
+
+
 def test_a_board_in_one_corner_only_is_told_with_the_empty_edge() -> None:
     corner = [view for view in seen(40) if view.pixels[:, 0].max() < 420][:9]
     verdict = judge(solve_lens(corner, SIZE))
