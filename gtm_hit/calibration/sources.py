@@ -192,7 +192,7 @@ def _turned_note(turned: list[str]) -> tuple[str, ...]:
     which = turned[0] if len(turned) == 1 else f"{len(turned)} pictures"
     asks = "asks" if len(turned) == 1 else "ask"
     return (
-        f"{which} {asks} viewers to turn the picture (EXIF). The lens is solved for the pixels as stored, "
+        f"{which} {asks} viewers to turn what they show. The lens is solved for the pixels as stored, "
         "which is how pictures are imported here.",
     )
 
@@ -203,6 +203,7 @@ def _of_video(path: Path, sampled: int) -> Source:
         if not ok:
             raise SourceError(f"{path.name} holds no frame that can be decoded.")
         total = int(capture.get(cv2.CAP_PROP_FRAME_COUNT))
+        turned = [path.name] if capture.get(cv2.CAP_PROP_ORIENTATION_META) else []
     size = (first.shape[1], first.shape[0])
     step = max(1, total // max(1, sampled)) if total > 0 else UNKNOWN_STEP
     count = min(sampled, total) if total > 0 else sampled
@@ -210,7 +211,7 @@ def _of_video(path: Path, sampled: int) -> Source:
     def read_all() -> Iterator[Picture | NotFound]:
         yield from _sharp(_sampled(path, step))
 
-    return Source(size, count, (), read_all)
+    return Source(size, count, _turned_note(turned), read_all)
 
 
 @contextmanager

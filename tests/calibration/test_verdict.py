@@ -126,7 +126,7 @@ def test_views_of_two_zooms_are_not_good_though_a_lens_between_them_fits_half_a_
     assert judge(solution).word is not Word.GOOD
 
 
-def test_many_views_that_do_not_agree_on_one_lens_are_sent_to_look_at_the_zoom(
+def test_many_views_that_do_not_agree_are_sent_to_look_at_the_zoom(
     solution: LensSolution,
 ) -> None:
     verdict = judge(replace(solution, rms=0.3, holdout_rms=0.45))
