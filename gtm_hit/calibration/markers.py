@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from gtm_hit.calibration.boards import Board, charuco
 from gtm_hit.calibration.views import Floats, Grey
 
+SMALLEST = 36.0  # pixels around a marker; OpenCV's own share of the picture's side leaves out far boards
+LARGEST = 2600  # pixels, the longer side of a picture that is still made larger
 PAPER = 90  # percentile of the grey values of a marker and its rim: white paper
 
 
@@ -23,8 +25,26 @@ class Seen:
 
 
 def detect(grey: Grey, board: Board) -> Seen:
-    """What of a ChArUco board is seen."""
-    corners, ids, markers, _ = cv2.aruco.CharucoDetector(charuco(board)).detectBoard(grey)
+    """What of a ChArUco board is seen; where that is little, in the picture made larger, too."""
+    seen = _detect(grey, board)
+    if 2 * len(seen.ids) >= board.point_count or max(grey.shape) > LARGEST:
+        return seen
+    large = cv2.resize(grey, None, fx=2, fy=2, interpolation=cv2.INTER_CUBIC)
+    again = _detect(large.astype(np.uint8, copy=False), board)
+    if len(again.ids) <= len(seen.ids):
+        return seen
+    return Seen(_halved(again.corners), again.ids, tuple(_halved(marker) for marker in again.markers))
+
+
+def _halved(pixels: Floats) -> Floats:
+    return (pixels + 0.5) / 2 - 0.5
+
+
+def _detect(grey: Grey, board: Board) -> Seen:
+    wanted = cv2.aruco.DetectorParameters()
+    wanted.minMarkerPerimeterRate = min(wanted.minMarkerPerimeterRate, SMALLEST / max(grey.shape))
+    detector = cv2.aruco.CharucoDetector(charuco(board), cv2.aruco.CharucoParameters(), wanted)
+    corners, ids, markers, _ = detector.detectBoard(grey)
     none = ids is None or corners is None
     return Seen(
         np.zeros((0, 2)) if none else np.asarray(corners, dtype=np.float64).reshape(-1, 2),

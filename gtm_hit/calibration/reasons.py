@@ -120,6 +120,10 @@ def why_squares(name: str, grey: Grey, scale: float, board: Board, corners: Floa
     rows, columns = corners.shape[:2]
     if (columns > rows) != (board.columns > board.rows):
         rows, columns, corners = columns, rows, corners.transpose(1, 0, 2)
+    confirmed = chessboard_corners(grey, (columns, rows)) is not None
+    if not confirmed and 2 * rows * columns < board.point_count:
+        # Paving and windows look like a few squares, too.
+        return NotFound(name, _blurred(grey) or _nothing(board))
     edges = cut_at(corners, grey.shape)
     if columns <= board.columns and rows <= board.rows and edges:
         return NotFound(
@@ -127,13 +131,13 @@ def why_squares(name: str, grey: Grey, scale: float, board: Board, corners: Floa
             f"The board is cut off: {columns}×{rows} of its {board.columns}×{board.rows} inner corners "
             f"are seen, and it goes on beyond the {' and the '.join(edges)} of the picture.",
         )
-    if chessboard_corners(grey, (columns, rows)) is None:
-        return NotFound(
-            name,
-            f"Only a part of {columns}×{rows} of the {board.columns}×{board.rows} inner corners is seen; "
-            "something may hide the others, or light blots them out.",
-        )
-    return NotFound(name, _other(board, columns, rows), (columns, rows))
+    if confirmed:
+        return NotFound(name, _other(board, columns, rows), (columns, rows))
+    return NotFound(
+        name,
+        f"Only a part of {columns}×{rows} of the {board.columns}×{board.rows} inner corners is seen; "
+        "something may hide the others, or light blots them out.",
+    )
 
 
 def _circles_instead(grey: Grey, board: Board) -> str | None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from gtm_hit.calibration.boards import Board
-from gtm_hit.calibration.detection import find_board
+from gtm_hit.calibration.detection import find_board, larger_board
 from gtm_hit.calibration.views import BoardView, NotFound, Picture
 
+ASKED = 3  # pictures with a board: whether it is a part of a larger one
 EXPLAINED = 12  # pictures: asking what else might be in them takes longer than looking for the board
 
 Progress = Callable[[int], object]  # called with the number of pictures looked at
@@ -19,6 +20,8 @@ Progress = Callable[[int], object]  # called with the number of pictures looked 
 class Searched:
     views: tuple[BoardView, ...]
     missing: tuple[NotFound, ...]
+
+    larger: tuple[int, int] | None = None  # columns × rows of the chessboard of which a part was found
 
     @property
     def other(self) -> tuple[int, int] | None:
@@ -43,13 +46,22 @@ def search(
     """The board in every picture; for those without it why, the first few of them thoroughly."""
     views: list[BoardView] = []
     missing: list[NotFound] = []
+    larger: list[tuple[int, int] | None] = []
     for number, picture in enumerate(pictures, start=1):
         explain = len(missing) < EXPLAINED
         found = find_board(picture, board, explain) if isinstance(picture, Picture) else picture
         if isinstance(found, BoardView):
             views.append(found)
+            if isinstance(picture, Picture) and len(larger) < ASKED:
+                larger.append(larger_board(picture, board))
         else:
             missing.append(found)
         if progress:
             progress(number)
-    return Searched(tuple(views), tuple(missing))
+    return Searched(tuple(views), tuple(missing), _agreed(larger))
+
+
+def _agreed(larger: Sequence[tuple[int, int] | None]) -> tuple[int, int] | None:
+    """What most of the pictures asked show."""
+    size, count = Counter(larger).most_common(1)[0] if larger else (None, 0)
+    return size if 2 * count > len(larger) else None

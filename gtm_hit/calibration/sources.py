@@ -27,6 +27,7 @@ MOST_BYTES = 64 * 2**20  # of one picture's file
 MOST_PIXELS = 200_000_000
 SAMPLED = 120  # frames of a video
 TRIED = 3  # frames around each of them, of which the sharpest is taken
+UNKNOWN_STEP = 10  # frames, where a video does not tell how long it is
 BLURRED = 0.3  # of the median sharpness of a video's frames
 
 
@@ -47,7 +48,10 @@ class Source:
 def open_source(path: Path, sampled: int = SAMPLED) -> Source:
     """What `path` holds. Raises SourceError, also for pictures of different sizes, naming which."""
     if path.is_dir():
-        return _of_folder(path)
+        try:
+            return _of_folder(path)
+        except OSError as error:
+            raise SourceError(f"{path} cannot be read: {error.strerror}.") from error
     if not path.is_file():
         raise SourceError(f"{path} is {'no plain file' if path.exists() else 'not there'}.")
     if zipfile.is_zipfile(path):
@@ -188,7 +192,7 @@ def _turned_note(turned: list[str]) -> tuple[str, ...]:
     which = turned[0] if len(turned) == 1 else f"{len(turned)} pictures"
     asks = "asks" if len(turned) == 1 else "ask"
     return (
-        f"{which} {asks} viewers to turn the picture (EXIF). The lens is solved for the pixels as stored, "
+        f"{which} {asks} viewers to turn what they show. The lens is solved for the pixels as stored, "
         "which is how pictures are imported here.",
     )
 
@@ -199,14 +203,15 @@ def _of_video(path: Path, sampled: int) -> Source:
         if not ok:
             raise SourceError(f"{path.name} holds no frame that can be decoded.")
         total = int(capture.get(cv2.CAP_PROP_FRAME_COUNT))
+        turned = [path.name] if capture.get(cv2.CAP_PROP_ORIENTATION_META) else []
     size = (first.shape[1], first.shape[0])
-    step = max(1, total // max(1, sampled))
-    count = min(sampled, max(1, total)) if total > 0 else sampled
+    step = max(1, total // max(1, sampled)) if total > 0 else UNKNOWN_STEP
+    count = min(sampled, total) if total > 0 else sampled
 
     def read_all() -> Iterator[Picture | NotFound]:
         yield from _sharp(_sampled(path, step))
 
-    return Source(size, count, (), read_all)
+    return Source(size, count, _turned_note(turned), read_all)
 
 
 @contextmanager

@@ -23,6 +23,7 @@ ODD_ASPECT, WRONG_ASPECT = 0.02, 0.06  # fx / fy - 1
 OFF_CENTRE = 0.15  # of the picture's side, from its middle
 HIGH_RMS, TOO_HIGH_RMS = 0.5, 1.5  # pixels
 HOLDOUT = 3.0  # times the RMS
+APART, LITTLE = 1.25, 0.4  # times the RMS and pixels: many views that do not agree on one lens
 SPARSE, BARE = 0.55, 0.25  # share of cells with points
 FOLD_NEAR = 0.85  # of the farthest corner's distance
 ONE_WAY = 160.0  # degrees: views that lean into less of the circle lean one way
@@ -198,10 +199,12 @@ def _held(solution: LensSolution) -> Reason | None:
             return None
         text = "When some of the views are left out, no lens can be solved from the others."
         return Reason("unstable", text, _more_tilts(solution), True)
-    if held <= HIGH_RMS or held <= HOLDOUT * solution.rms:
+    ratio = held / max(solution.rms, 1e-9)
+    apart = ratio > APART and held > LITTLE and len(solution.views) >= GOOD_VIEWS
+    if not apart and (held <= HIGH_RMS or ratio <= HOLDOUT):
         return None
     text = f"Views it was solved without miss by {held:.2f} px, its own by {solution.rms:.2f} px."
-    step = "Take a model with fewer coefficients, or more views."
+    step = "Check that neither zoom nor focus was changed between the pictures; if not, add views."
     return Reason("hold-out", text, step, held > 4 * HIGH_RMS)
 
 

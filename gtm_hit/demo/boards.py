@@ -39,12 +39,14 @@ class Placement:
 
 
 def draw_board(picture: NDArray[np.float32], lens: Lens, board: Board, placement: Placement) -> None:
-    """Paint the board over a grey picture (height, width) of the lens's size, edges smooth."""
+    """Paint the board smoothly over a picture of the lens's size, (height, width) or (height, width, 3)."""
     left, top, right, bottom = _box(lens, board, placement)
     if right - left < 3 or bottom - top < 3:
         return
     light, cover = _light(lens, board, placement, (left, top, right, bottom))
     part = picture[top:bottom, left:right]
+    if part.ndim == 3:
+        light, cover = light[:, :, None], cover[:, :, None]
     part += (light - part * cover).astype(np.float32)
 
 

@@ -12,6 +12,7 @@ from gtm_hit.calibration.boards import Board
 from gtm_hit.calibration.detection import find_board
 from gtm_hit.calibration.searching import EXPLAINED, search
 from gtm_hit.calibration.views import BoardView, NotFound, Picture
+from gtm_hit.demo.boards import board_picture
 from tests.calibration.board_scene import CHESS, KINDS, LENS, drawn, picture_of, straight, true_pixels, views
 
 
@@ -35,8 +36,6 @@ def test_corners_are_as_exact_in_a_picture_that_is_looked_at_smaller() -> None:
     matrix = LENS.matrix * 3
     matrix[2, 2] = 1
     large = replace(LENS, width=1920, height=1200, matrix=matrix)
-    from gtm_hit.demo.boards import board_picture
-
     placement = straight()
     view = find_board(Picture("large", board_picture(large, CHESS, placement)), CHESS)
     assert isinstance(view, BoardView)
@@ -134,3 +133,22 @@ def test_a_search_counts_what_would_fit_and_stops_explaining_after_some() -> Non
     assert [each.other for each in found.missing][-2:] == [None, None]
     assert seen[-1] == len(many)
     assert len(found.by_reason()[0][1]) == EXPLAINED
+
+
+def test_a_board_of_which_only_a_part_was_asked_for_is_told() -> None:
+    pictures = [Picture(f"{number}", grey) for number, (_, grey) in enumerate(drawn("chessboard", 12)[:4])]
+    assert search(pictures, CHESS).larger is None
+    asked = search(pictures, replace(CHESS, columns=7))
+    assert asked.larger == (8, 5) or asked.other == (8, 5)
+
+
+def test_markers_too_small_for_opencvs_own_search_are_found() -> None:
+    """Squares of 18 px, markers of 13 px, in a large picture."""
+    large = replace(LENS, width=1920, height=1000)
+    placement = replace(straight(), tvec=np.array([0.3, 0.2, 1.25]))
+    grey = board_picture(large, KINDS["charuco"], placement)
+    found = find_board(Picture("far", grey), KINDS["charuco"])
+    assert isinstance(found, BoardView), found
+    assert len(found.ids) >= 12
+    true = cv2.projectPoints(found.points, placement.rvec, placement.tvec, LENS.matrix, LENS.distortion)[0]
+    assert np.abs(true.reshape(-1, 2) - found.pixels).max() < 0.3

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from argparse import ArgumentParser, ArgumentTypeError
+from argparse import ArgumentParser
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from django.core.management.base import CommandError
 
-from gtm_hit.calibration.boards import DEFAULT_DICTIONARY, DEFAULT_MARKER, Board, BoardKind, describe
+from gtm_hit.calibration.boards import Board, describe
 from gtm_hit.calibration.choosing import choose
 from gtm_hit.calibration.intrinsics import LensSolution, solve_lens
 from gtm_hit.calibration.lens_models import Coefficients, LensModel
@@ -19,6 +19,7 @@ from gtm_hit.calibration.sources import SAMPLED, Source, open_source
 from gtm_hit.calibration.verdict import Verdict, judge, worst_view
 from gtm_hit.calibration.views import BoardView
 from gtm_hit.geometry.errors import GeometryError
+from gtm_hit.management.calibrating.board_arguments import add_board_arguments, told_board
 
 HELP = "Find a camera's lens from pictures of a board, and say whether it can be trusted."
 MOST_VIEWS = 40
@@ -31,30 +32,8 @@ Say = Callable[[str], object]
 
 def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("source", type=Path, help="a folder or zip of pictures, or a video, of one camera")
-    parser.add_argument("--board", choices=[kind.value for kind in BoardKind], default="chessboard")
-    parser.add_argument(
-        "--size",
-        type=_size,
-        required=True,
-        metavar="9x6",
-        help="columns x rows: inner corners of a chessboard, circles, squares of a ChArUco board",
-    )
-    parser.add_argument(
-        "--spacing", type=float, required=True, metavar="METRES", help="side of a square, or between circles"
-    )
-    _add_print_arguments(parser)
+    add_board_arguments(parser)
     _add_solving_arguments(parser)
-
-
-def _add_print_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument(
-        "--marker", type=float, default=DEFAULT_MARKER, metavar="SHARE", help="ChArUco: of a square's side"
-    )
-    parser.add_argument("--dictionary", default=DEFAULT_DICTIONARY, help="ChArUco (default %(default)s)")
-    parser.add_argument("--inverted", action="store_true", help="white was printed on black")
-    parser.add_argument(
-        "--legacy", action="store_true", help="ChArUco laid out as by OpenCV before version 4.6"
-    )
 
 
 def _add_solving_arguments(parser: ArgumentParser) -> None:
@@ -84,11 +63,12 @@ def _add_solving_arguments(parser: ArgumentParser) -> None:
 
 def run(options: dict[str, Any], say: Say) -> dict[str, Any]:
     try:
-        board = _board(options)
+        board = told_board(options)
         source = open_source(options["source"], options["frames"])
         _introduce(board, source, say)
         found = search(source.read(), board, _progress(source.count, say))
         _tell_missing(found, say)
+        _tell_larger(found, say)
         views = _chosen(found, source, options, say)
         model = LensModel(options["model"], options["fixed_centre"], options["fixed_aspect"])
         solution = solve_lens(views, source.size, model)
@@ -97,30 +77,8 @@ def run(options: dict[str, Any], say: Say) -> dict[str, Any]:
     verdict = judge(solution)
     _tell(solution, verdict, say)
     counted = {"found": len(found.views), "pictures": len(found.views) + len(found.missing)}
-    missing = {"missing": missing_report(found.missing), "notes": list(source.notes)}
-    return {"board": board.as_json(), **counted, **lens_report(solution, verdict), **missing}
-
-
-def _size(text: str) -> tuple[int, int]:
-    columns, _, rows = text.lower().replace("×", "x").partition("x")
-    try:
-        return int(columns), int(rows)
-    except ValueError as error:
-        raise ArgumentTypeError(f"{text!r} is no size; write columns x rows, as 9x6") from error
-
-
-def _board(options: dict[str, Any]) -> Board:
-    columns, rows = options["size"]
-    return Board(
-        BoardKind(options["board"]),
-        columns,
-        rows,
-        options["spacing"],
-        options["marker"],
-        options["dictionary"].upper(),
-        options["inverted"],
-        options["legacy"],
-    )
+    rest = {"missing": missing_report(found.missing), "larger": found.larger, "notes": list(source.notes)}
+    return {"board": board.as_json(), **counted, **lens_report(solution, verdict), **rest}
 
 
 def _introduce(board: Board, source: Source, say: Say) -> None:
@@ -144,6 +102,12 @@ def _tell_missing(found: Searched, say: Say) -> None:
         shown = ", ".join(names[:SHOWN])
         more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
         say(f"  {shown}{more}: {reason}")
+
+
+def _tell_larger(found: Searched, say: Say) -> None:
+    if found.larger:
+        columns, rows = found.larger
+        say(f"Note: the board seems to have {columns}×{rows} inner corners, of which only a part is used.")
 
 
 def _chosen(found: Searched, source: Source, options: dict[str, Any], say: Say) -> list[BoardView]:

@@ -5,11 +5,12 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
-from gtm_hit.management.calibrating import adjust, ground, lens, sync, undistort
+from gtm_hit.management.calibrating import adjust, board, ground, lens, sync, undistort
 from gtm_hit.management.calibrating.step import Step
 
 STEPS: dict[str, Step] = {
     "lens": lens,
+    "board": board,
     "ground": ground,
     "adjust": adjust,
     "undistort": undistort,

@@ -1,0 +1,185 @@
+"""Lenses from boards: `python -m benchmarks.calibration_lens [--data FOLDER]`.
+
+Rendered boards need nothing: pictures are made through a lens that is known. FOLDER holds real pictures:
+`chessboard_opencv_left`, `pose2sim_chessboard`, `charuco_4x5_masked`, `acircles_photos`; what is not there
+is left out. Times are of one core (OpenCV's threads are switched off).
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from benchmarks.calibration_rows import Row
+from gtm_hit.calibration.boards import Board, BoardKind
+from gtm_hit.calibration.detection import find_board
+from gtm_hit.calibration.intrinsics import LensSolution, solve_lens
+from gtm_hit.calibration.lens_numbers import Lens
+from gtm_hit.calibration.searching import Searched, search
+from gtm_hit.calibration.sources import decoded
+from gtm_hit.calibration.verdict import Word, judge, worst_view
+from gtm_hit.calibration.views import BoardView, NotFound, Picture
+from gtm_hit.demo.boards import board_picture, placements
+
+SMALL, FULL = (960, 540), (1920, 1080)
+VIEWS, SEARCHED, SOLVED = 30, 200, 20
+BOARDS = (
+    Board(BoardKind.CHESSBOARD, 9, 6, 0.03),
+    Board(BoardKind.CIRCLES, 9, 6, 0.03),
+    Board(BoardKind.ACIRCLES, 4, 11, 0.04),
+    Board(BoardKind.CHARUCO, 8, 6, 0.03),
+    Board(BoardKind.CHARUCO, 6, 8, 0.03, inverted=True, legacy=True),
+)
+
+
+def rows(data: Path | None) -> list[Row]:
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        found = [row for board in BOARDS for row in rendered(board)]
+        found += times()
+        return found + (list(real(data)) if data else [])
+    finally:
+        cv2.setNumThreads(threads)
+
+
+def true_lens(size: tuple[int, int]) -> Lens:
+    scale = size[0] / 960
+    matrix = np.array([[800.0 * scale, 0, 470 * scale], [0, 803.0 * scale, 276 * scale], [0, 0, 1]])
+    return Lens(*size, matrix, np.array([-0.25, 0.1, 0.0008, -0.0005, -0.02]))
+
+
+def pictures(board: Board, size: tuple[int, int], count: int, noise: float = 1.0) -> list[Picture]:
+    lens = true_lens(size)
+    return [
+        Picture(f"{number:03d}", board_picture(lens, board, placement, noise=noise, seed=number))
+        for number, placement in enumerate(placements(lens, board, count, seed=3))
+    ]
+
+
+def rendered(board: Board) -> list[Row]:
+    """A board of every kind before a known lens."""
+    found = search(pictures(board, SMALL, VIEWS), board)
+    solution, true = solve_lens(found.views, SMALL), true_lens(SMALL).matrix
+    focal = 100 * abs(solution.lens.matrix[0, 0] / true[0, 0] - 1)
+    centre = float(np.abs(solution.lens.matrix[:2, 2] - true[:2, 2]).max())
+    name = f"rendered {board.kind}{', inverted, legacy' if board.legacy else ''}"
+    return [
+        Row(f"{name}: found", f"{len(found.views)} of {VIEWS}", "-", None),
+        Row(f"{name}: fx off", f"{focal:.3f} %", "≤ 0.1 %", focal <= 0.1),
+        Row(f"{name}: centre off", f"{centre:.2f} px", "≤ 0.5 px", centre <= 0.5),
+        Row(f"{name}: RMS", f"{solution.rms:.3f} px", "≤ 0.06 px", solution.rms <= 0.06),
+    ]
+
+
+def times() -> list[Row]:
+    board = BOARDS[0]
+    some = pictures(board, FULL, SOLVED, noise=2.0)
+    # As in a real video half of the pictures show no whole board.
+    cut = [np.ascontiguousarray(np.roll(each.grey, FULL[0] // 3, axis=1)) for each in some]
+    every = [
+        Picture(f"{number:03d}", some[number % SOLVED].grey if number % 2 else cut[number % SOLVED])
+        for number in range(SEARCHED)
+    ]
+    start = time.perf_counter()
+    search(every, board)
+    searched = time.perf_counter() - start
+    views = [view for each in some if isinstance(view := find_board(each, board), BoardView)]
+    start = time.perf_counter()
+    solve_lens(views, FULL)
+    solved = time.perf_counter() - start
+    start = time.perf_counter()
+    solve_lens(views[1:], FULL)
+    again = time.perf_counter() - start
+    return [
+        Row(f"{SEARCHED} full-HD pictures searched", f"{searched:.1f} s", "≤ 60 s", searched <= 60),
+        Row(f"{len(views)} full-HD views solved", f"{solved:.2f} s", "≤ 2 s", solved <= 2),
+        Row("a view switched off, solved again", f"{again:.2f} s", "< 1 s", again < 1),
+    ]
+
+
+def real(data: Path) -> Iterator[Row]:
+    yield from left_photographs(data / "chessboard_opencv_left")
+    yield from portraits(data / "pose2sim_chessboard")
+    for camera in ("cam0", "cam3"):
+        yield from masked(data / "charuco_4x5_masked", camera)
+    yield from circle_photographs(data / "acircles_photos")
+
+
+def folder_search(folder: Path, pattern: str, board: Board) -> tuple[Searched, tuple[int, int]] | None:
+    read: list[Picture | NotFound] = [
+        decoded(file.name, file.read_bytes()) for file in sorted(folder.glob(pattern))
+    ]
+    sizes = {each.size for each in read if isinstance(each, Picture)}
+    return (search(read, board), sizes.pop()) if len(sizes) == 1 else None
+
+
+def left_photographs(folder: Path) -> Iterator[Row]:
+    found = folder_search(folder, "*.jpg", BOARDS[0])
+    if found is None:
+        return
+    solution = solve_lens(found[0].views, found[1])
+    count, focal = len(found[0].views), solution.parameters["fx"]
+    yield Row("left*.jpg: found", f"{count} of 13", "13 of 13", count == 13)
+    yield Row("left*.jpg: RMS", f"{solution.rms:.3f} px", "≤ 0.20 px", solution.rms <= 0.20)
+    yield Row(
+        "left*.jpg: fx", f"{focal:.2f} ± {solution.sigma['fx']:.2f}", "532.8 ± 1", abs(focal - 532.8) <= 1
+    )
+    yield verdict_row("left*.jpg", solution, "-", None)
+
+
+def portraits(folder: Path) -> Iterator[Row]:
+    found = folder_search(folder, "cam04*.jpg", Board(BoardKind.CHESSBOARD, 4, 7, 0.06))
+    if found is None:
+        return
+    views, size = found[0].views, found[1]
+    solution = solve_lens(views, size)
+    worst = worst_view(solution).name
+    rest = solve_lens([view for view in views if view.name != worst], size)
+    yield Row("pose2sim cam04: found", f"{len(views)} of 7", "6 of 7", len(views) == 6)
+    yield Row("pose2sim cam04: RMS", f"{solution.rms:.3f} px", "≤ 0.93 px", solution.rms <= 0.93)
+    yield Row(f"pose2sim cam04 without {worst}", f"{rest.rms:.3f} px", "≤ 0.22 px", rest.rms <= 0.22)
+
+
+def masked(folder: Path, camera: str) -> Iterator[Row]:
+    board = Board(BoardKind.CHARUCO, 4, 5, 0.054, 0.75, "DICT_4X4_1000", inverted=True)
+    found = folder_search(folder, f"{camera}*.png", board)
+    if found is None:
+        return
+    solution = solve_lens(found[0].views, found[1])
+    name, rms = f"ChArUco {camera}", solution.rms
+    if camera == "cam0":
+        yield Row(f"{name}: RMS", f"{rms:.3f} px", "≤ 0.20 px", rms <= 0.20)
+        yield verdict_row(name, solution, "-", None)
+    else:
+        yield verdict_row(name, solution, "flagged", judge(solution).word is not Word.GOOD)
+
+
+def circle_photographs(folder: Path) -> Iterator[Row]:
+    found = folder_search(folder, "*.png", Board(BoardKind.ACIRCLES, 4, 11, 0.03))
+    if found is None:
+        return
+    solution = solve_lens(found[0].views, found[1])
+    yield Row("circle photographs: RMS", f"{solution.rms:.3f} px", "-", None)
+    met = judge(solution).word is Word.DO_NOT_USE
+    yield verdict_row("circle photographs", solution, Word.DO_NOT_USE.value, met)
+
+
+def verdict_row(name: str, solution: LensSolution, bar: str, met: bool | None) -> Row:
+    return Row(f"{name}: verdict", judge(solution).word.value, bar, met)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--data", type=Path, help="a folder with real pictures")
+    for row in rows(parser.parse_args().data):
+        print(f"{row.name:<45} {row.got:>18} {row.bar:>12}  {row.met}")
+
+
+if __name__ == "__main__":
+    main()
