@@ -5,11 +5,13 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
-from gtm_hit.management.calibrating import adjust
+from gtm_hit.management.calibrating import adjust, check, export
 from gtm_hit.management.calibrating.step import Step
 
 STEPS: dict[str, Step] = {
     "adjust": adjust,
+    "check": check,
+    "export": export,
 }
 
 
