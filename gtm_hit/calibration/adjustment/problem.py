@@ -102,7 +102,7 @@ def file_of(problem: Problem, views: tuple[View, ...], points: Floats) -> BaProb
 
 
 def feet_of_pairs(points: Floats) -> NDArray[np.bool_]:
-    """Which points are feet, as far as one can tell: their neighbour in the list is a person's height above."""
+    """Which points are feet, as far as one can tell: a neighbour in the list is one person higher."""
     feet = np.zeros(len(points), dtype=bool)
     away = np.diff(points, axis=0)
     near = np.hypot(away[:, 0], away[:, 1]) < FEET_APART
