@@ -35,6 +35,8 @@ def check(problem: Problem) -> None:
     _check_seen(problem, problem.measured_seen, len(problem.measured), "measured point")
     if not np.isfinite(problem.measured).all():
         raise AdjustmentError("A measured point has a coordinate that is no number.")
+    if np.isinf(problem.points).any():
+        raise AdjustmentError("A point starts at an infinite coordinate.")
     _check_same_places(problem)
     if not len(problem.seen.pixels) + len(problem.measured_seen.pixels):
         raise AdjustmentError("Nothing was clicked.")
