@@ -14,8 +14,8 @@ import pytest
 from tests.conftest import REPOSITORY
 
 OURS = (
-    *("base/", "compare/", "conflicts/", "geometry/", "review/", "saving/", "site/", "tables/", "truth/"),
-    *("views/", "workbench/"),
+    *("base/", "calibration/", "compare/", "conflicts/", "geometry/", "review/", "saving/", "site/"),
+    *("tables/", "truth/", "views/", "workbench/"),
 )
 IMPORT = re.compile(r"""(?:from|import|import\.meta\.resolve)\s*\(?["'](\.[^"']+)["']""")
 

@@ -28,6 +28,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     "compare": {"base", "tables", "truth", "views"},
     "review": {"base", "compare", "tables", "truth", "views"},
     "conflicts": {"base"},
+    "calibration": {"base"},
+    "calibration/ground": {"base", "calibration", "geometry"},
+    "calibration/lens": {"base", "calibration"},
     "site": {"base"},
 }
 ABOVE = "workbench"  # builds the page from all of its rooms

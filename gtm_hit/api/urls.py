@@ -30,6 +30,8 @@ from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, St
 from gtm_hit.api.common.docs import DocsView
 from gtm_hit.api.common.missing import MissingView
 from gtm_hit.api.datasets import importing, listing, videos
+from gtm_hit.api.desk import desks, lenses
+from gtm_hit.api.desk import ground as desk_ground
 from gtm_hit.api.quality import comparing, statistics
 from gtm_hit.api.workbench import decision, frames, tutorial
 from gtm_hit.api.workbench.grids import GridView
@@ -181,7 +183,27 @@ one_dataset += [
     path("campaigns/<str:name>/scores/", scores.Scores.as_view()),
     path("campaigns/<str:name>/suspicion/", scores.SuspiciousAssignments.as_view()),
 ]
+one_desk: list[URLPattern | URLResolver] = [
+    path("", desks.OneDesk.as_view()),
+    path("cameras/", desks.DeskCameras.as_view()),
+    path("cameras/<str:camera>/", desks.OneDeskCamera.as_view()),
+    path("cameras/<str:camera>/clicks/", desk_ground.PairsFile.as_view()),
+    path("cameras/<str:camera>/clicks/<str:point>/", desk_ground.OneClick.as_view()),
+    path("cameras/<str:camera>/lens/", lenses.DeskLens.as_view()),
+    path("cameras/<str:camera>/lens/file/", lenses.DeskLensFile.as_view()),
+    path("cameras/<str:camera>/lens/in-place/", lenses.DeskLensInPlace.as_view()),
+    path("cameras/<str:camera>/picture/", desk_ground.GroundPicture.as_view()),
+    path("ground/", gzip_page(desk_ground.Ground.as_view())),
+    path("points/file/", desk_ground.PointsFile.as_view()),
+    path("points/grid/", desk_ground.PointsGrid.as_view()),
+    path("points/named/<str:point>/", desk_ground.OnePoint.as_view()),
+    path("undo/", desk_ground.Undo.as_view()),
+    path("redo/", desk_ground.Redo.as_view()),
+    re_path(r"^pictures/(?P<digest>[0-9a-f]{64})\.jpg$", desks.DeskImage.as_view(), name="desk-picture"),
+]
 scripts: list[URLPattern | URLResolver] = [
+    path("calibration-desks/", desks.Desks.as_view()),
+    path("calibration-desks/<slug:desk>/", include(one_desk)),
     path("datasets/", listing.Datasets.as_view()),
     path("datasets/<slug:slug>/", include(one_dataset)),
     path("sources/", importing.Sources.as_view()),

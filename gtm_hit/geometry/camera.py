@@ -17,6 +17,7 @@ from gtm_hit.geometry.errors import GeometryError
 Floats = NDArray[np.float64]
 
 DISTORTION_LENGTHS = (4, 5, 8, 12, 14)  # the lengths OpenCV's model comes in
+OUTSIDE = -100  # pixels; where a map of cv2.remap leads out of every picture
 STEEP = 0.1  # below this share of "up" in the image, a camera counts as looking straight down or up
 
 
@@ -197,7 +198,10 @@ def undistorted(camera: Camera, target_matrix: ArrayLike | None = None) -> Camer
 
 
 def undistort_maps(camera: Camera, target_matrix: ArrayLike | None = None) -> tuple[NDArray, NDArray]:
-    """The two maps with which cv2.remap takes the lens out of the camera's images."""
+    """The two maps with which cv2.remap takes the lens out of the camera's images.
+
+    Pixels beyond the lens's fold become black: OpenCV would repeat there what is seen elsewhere.
+    """
     target = undistorted(camera, target_matrix).matrix
     size = (camera.width, camera.height)
     if camera.model is CameraModel.FISHEYE:
@@ -205,4 +209,22 @@ def undistort_maps(camera: Camera, target_matrix: ArrayLike | None = None) -> tu
         return cv2.fisheye.initUndistortRectifyMap(
             camera.matrix, camera.distortion, turn, target, size, cv2.CV_16SC2
         )
-    return cv2.initUndistortRectifyMap(camera.matrix, camera.distortion, None, target, size, cv2.CV_16SC2)
+    coarse, fine = cv2.initUndistortRectifyMap(
+        camera.matrix, camera.distortion, None, target, size, cv2.CV_16SC2
+    )
+    coarse[beyond_fold(camera, target)] = OUTSIDE
+    return coarse, fine
+
+
+def beyond_fold(camera: Camera, target_matrix: ArrayLike | None = None) -> NDArray[np.bool_]:
+    """(H, W): pixels of the undistorted picture that look where the lens has no answer."""
+    (fx, _, cx), (_, fy, cy), _ = undistorted(camera, target_matrix).matrix.tolist()
+    x, y = (np.arange(camera.width) - cx) / fx, (np.arange(camera.height) - cy) / fy
+    return np.hypot(x, y[:, None]) >= fold(camera)
+
+
+def fold(camera: Camera) -> float:
+    """Tangent of the angle off the optical axis from which on the lens has no answer; may be infinite."""
+    if camera.model is CameraModel.FISHEYE:
+        return float(np.tan(fisheye.limit(camera.distortion)))
+    return lens.limit(camera.distortion)

@@ -7,6 +7,7 @@ from gtm_hit.models.calibration import Calibration
 from gtm_hit.models.campaign import Campaign, CampaignWorker
 from gtm_hit.models.campaign_link import CampaignLink
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
+from gtm_hit.models.desk import BoardPicture, Click, Desk, DeskCamera, DeskEdit, DeskPicture, MeasuredPoint
 from gtm_hit.models.gold import GoldFrame, PlantedFault, Planting
 from gtm_hit.models.job import Job
 from gtm_hit.models.money import MoneyEntry, WorkClock
@@ -23,6 +24,7 @@ from gtm_hit.models.review import Appeal, Category, Comment, Mend, ReviewChoice,
 from gtm_hit.models.role import Membership, Role, RoleChange
 from gtm_hit.models.score import AssignmentScore, WorkerScore
 from gtm_hit.models.stitching import StitchConflict, StitchedFrame, Stitching, StitchingRun
+from gtm_hit.models.sync import VideoSync, VideoSyncState
 from gtm_hit.models.work import Assignment, Batch, Worker
 
 __all__ = [
@@ -34,14 +36,20 @@ __all__ = [
     "AssignmentScore",
     "Attempt",
     "Batch",
+    "BoardPicture",
     "Calibration",
     "Camera",
     "Campaign",
     "CampaignLink",
     "CampaignWorker",
     "Category",
+    "Click",
     "Comment",
     "Dataset",
+    "Desk",
+    "DeskCamera",
+    "DeskEdit",
+    "DeskPicture",
     "EntryLink",
     "Frame",
     "GoldFrame",
@@ -50,6 +58,7 @@ __all__ = [
     "Job",
     "Layer",
     "LayerFrame",
+    "MeasuredPoint",
     "Membership",
     "Mend",
     "MoneyEntry",
@@ -77,6 +86,8 @@ __all__ = [
     "StitchingRun",
     "Submission",
     "Transition",
+    "VideoSync",
+    "VideoSyncState",
     "WorkClock",
     "Worker",
     "WorkerScore",

@@ -23,6 +23,9 @@ class Calibration(models.Model):
     cameras = models.JSONField(help_text="the content of a cameras.json")
     digest = models.CharField(max_length=64, help_text="SHA-256 of the cameras' numbers")
     source = models.CharField(max_length=300, blank=True, help_text="where it came from, in words")
+    report = models.JSONField(
+        default=dict, blank=True, help_text="a desk's: digests of its inputs, settings, figures per camera"
+    )
     created_by = models.ForeignKey(
         settings.AUTH_USER_MODEL, null=True, blank=True, on_delete=models.SET_NULL, related_name="+"
     )

@@ -27,6 +27,8 @@ class Job(models.Model):
         STITCH = "stitch", "stitching into ground truth"
         SEND_OUTBOX = "send_outbox", "messages to a platform"
         PROPOSE = "propose", "proposals of people"
+        SOLVE_LENS = "solve_lens", "lens from pictures of a board"
+        SYNC_VIDEOS = "sync_videos", "guess of videos' offsets"
 
     dataset = models.ForeignKey(
         Dataset,

@@ -1,4 +1,4 @@
-import { svg } from "./svg.js";
+import { svg } from "../base/svg.js";
 
 /**
  * @typedef {import("./queue.js").Conflict} Conflict

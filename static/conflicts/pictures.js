@@ -1,5 +1,5 @@
 import { element } from "../base/dom.js";
-import { svg } from "./svg.js";
+import { svg } from "../base/svg.js";
 
 /**
  * @typedef {import("./queue.js").Conflict} Conflict

@@ -12,6 +12,8 @@ from django.core.files.storage import default_storage
 from gtm_hit.models import Assignment, Dataset, Job, Layer, ProposalRun, Release
 from gtm_hit.ops.access import granting
 from gtm_hit.ops.access.roles import Role
+from gtm_hit.ops.desk import desks
+from gtm_hit.ops.desk import points as desk_points
 from gtm_hit.ops.exports import exporting
 from gtm_hit.ops.ground import grid_files
 from gtm_hit.ops.jobs import queue
@@ -76,7 +78,14 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
     default_storage.save(f"images/{picture[:2]}/{picture}.jpg", ContentFile(b"picture"))
     grid = grid_files.digest_of(dataset, dataset.calibrated_cameras()[0])
     run = ProposalRun.objects.create(dataset=dataset, method=ProposalRun.Method.BACKGROUND, digest="0" * 64)
+    desk = f"calibration-desks/desk-of-{dataset.slug}"
+    desk_points.put(desks.make(desk.partition("/")[2], dataset=dataset), "A1", 0.0, 0.0)
     return {
+        "calibration-desks/<slug:desk>": desk,
+        "cameras/<str:camera>": "cameras/C1",
+        "clicks/<str:point>": "clicks/A1",
+        "named/<str:point>": "named/A1",
+        "pictures/(?P<digest>[0-9a-f]{64})": f"pictures/{picture}",
         "proposals/<int:number>": f"proposals/{run.pk}",
         "datasets/<slug:slug>": f"datasets/{dataset.slug}",
         "layers/<str:name>": f"layers/{layer.name}",

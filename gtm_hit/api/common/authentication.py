@@ -17,6 +17,7 @@ from rest_framework.views import APIView
 
 from gtm_hit.models import ApiToken, Assignment, Dataset, Layer
 from gtm_hit.ops import api_tokens
+from gtm_hit.ops.access.desks import desk_verdict
 from gtm_hit.ops.access.roles import (
     SEES,
     Role,
@@ -134,6 +135,11 @@ class StaffMay(BasePermission):
 
 
 def _may(user: Any, roles: Roles, view: APIView) -> bool:
+    if "desk" in view.kwargs:
+        found = desk_verdict(user, roles, view.kwargs["desk"])
+        if found is Verdict.HIDDEN:
+            raise Http404
+        return found is Verdict.MAY
     if "slug" in view.kwargs:
         dataset = Dataset.objects.filter(slug=view.kwargs["slug"]).first()
     elif "layer" in view.kwargs:

@@ -90,6 +90,14 @@ class SceneSerializer(serializers.Serializer[Any]):
     preset = serializers.ChoiceField(choices=sorted(PRESETS), allow_null=True, default=None)
     tvec_unit = serializers.ChoiceField(choices=list(UNITS), allow_null=True, default=None)
     values = SceneValuesSerializer(default=dict)
+    alpha = FiniteField(
+        default=None,
+        allow_null=True,
+        min_value=0,
+        max_value=1,
+        help_text="where the lens is taken out, 0: no pixel stays black, 1: nothing seen is lost; "
+        "null: the camera matrix of the files",
+    )
 
 
 class ImportSerializer(SceneSerializer):

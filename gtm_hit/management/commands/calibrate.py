@@ -5,13 +5,17 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
-from gtm_hit.management.calibrating import adjust, check, export
+from gtm_hit.management.calibrating import adjust, check, export, ground, lens, sync, undistort
 from gtm_hit.management.calibrating.step import Step
 
 STEPS: dict[str, Step] = {
+    "lens": lens,
+    "ground": ground,
     "adjust": adjust,
     "check": check,
     "export": export,
+    "undistort": undistort,
+    "sync": sync,
 }
 
 

@@ -86,6 +86,16 @@ def add_scene(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--undistort", action="store_true", help="take the lens out of the images, by intrinsic_original"
     )
+    add_alpha(group)
+
+
+def add_alpha(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--alpha",
+        type=float,
+        metavar="0…1",
+        help="without lens, 0: no pixel stays black, 1: nothing seen is lost (the files' camera matrix)",
+    )
 
 
 def add_scene_values(group: argparse._ArgumentGroup) -> None:
@@ -118,6 +128,7 @@ def read_options(options: dict[str, Any]) -> ImportOptions:
         calibrations=given_folder(options["calibrations"]),
         annotations=given_folder(options["annotations"]),
         undistort=options["undistort"],
+        alpha=options["alpha"],
         layer=options["layer"],
         hidden_layer=options["hidden_layer"],
         keep_all_frames=options["keep_all_frames"],

@@ -50,6 +50,7 @@ class Command(SceneCommand):
         scene.add_argument(
             "--as-taken", action="store_true", help="leave the lens in the pictures (default: take it out)"
         )
+        importdataset.add_alpha(scene)
 
     def handle(self, *args: object, **options: Any) -> None:
         progress = ProgressLine(self.stdout)
@@ -90,5 +91,6 @@ def read_options(options: dict[str, Any]) -> VideoOptions:
         tvec_unit=options["tvec_unit"],
         calibrations=calibrations,
         undistort=not options["as_taken"],
+        alpha=options["alpha"],
     )
     return VideoOptions(dataset, tuple(options["videos"]), options["start"], options["until"])

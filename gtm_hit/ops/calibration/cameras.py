@@ -23,6 +23,7 @@ from gtm_hit.formats.calibration.wildtrack_xml import (
 from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.geometry.camera import CalibrationError, Camera, Floats, undistort_maps, undistorted
 from gtm_hit.geometry.grid import Grid
+from gtm_hit.geometry.undistorting import kept_matrix
 from gtm_hit.models import Camera as CameraRow
 from gtm_hit.models.dataset import name_validator
 from gtm_hit.ops.files.images import Undistort, remapper
@@ -42,6 +43,7 @@ class View:
 
     camera: Camera
     undistort: Undistort | None = None
+    taken: Camera | None = None  # as it took them, where they are undistorted
 
 
 def read_views(
@@ -51,21 +53,36 @@ def read_views(
     unit: str,
     undistort: bool,
     problems: ProblemList,
+    alpha: float | None = None,
 ) -> list[View]:
-    """The cameras `names` in order; those with problems, or of no known size, are left out."""
+    """The cameras `names` in order; those with problems, or of no known size, are left out.
+
+    With `alpha`, undistorted pictures get a camera matrix by `kept_matrix` and not the one of the files.
+    """
     for name in names:
         try:
             name_validator(name)
         except ValidationError as error:
             problems.add(f"camera {name}", " ".join(error.messages))
     if files.cameras_json is not None:
-        return _views_of_json(files.cameras_json, names, sizes, undistort, problems)
-    views = []
-    for index, name in enumerate(names):
-        view = _read_view(files, index, name, sizes.get(name), unit, undistort, problems)
-        if view is not None:
-            views.append(view)
-    return views
+        views = _views_of_json(files.cameras_json, names, sizes, undistort, problems)
+    else:
+        read = (
+            _read_view(files, index, name, sizes.get(name), unit, undistort, problems)
+            for index, name in enumerate(names)
+        )
+        views = [view for view in read if view is not None]
+    return views if alpha is None else [_kept(view, alpha, problems) for view in views]
+
+
+def _kept(view: View, alpha: float, problems: ProblemList) -> View:
+    if view.taken is None:
+        return view
+    try:
+        return undistorting(view.taken, kept_matrix(view.taken, alpha))
+    except CalibrationError as error:
+        problems.add("options", str(error))
+        return view
 
 
 def tell_wrong_unit(cameras: Sequence[Camera], grid: Grid, unit: str, problems: ProblemList) -> None:
@@ -157,7 +174,7 @@ def _views_of_json(
 
 def undistorting(taken: Camera, matrix: Floats) -> View:
     """The view of images whose lens is taken out, with the camera matrix they get."""
-    return View(undistorted(taken, matrix), remapper(*undistort_maps(taken, matrix)))
+    return View(undistorted(taken, matrix), remapper(*undistort_maps(taken, matrix)), taken)
 
 
 def _read_view(

@@ -119,7 +119,7 @@ def _read(options: ImportOptions, progress: Progress, problems: ProblemList) -> 
     sizes = camera_sizes(layout.images, {row.name: (row.width, row.height) for row in known}, problems)
     progress("reading image headers", 1, 1)
     files = layout.calibrations
-    views = read_views(files, layout.cameras, sizes, options.unit, options.undistort, problems)
+    views = read_views(files, layout.cameras, sizes, options.unit, options.undistort, problems, options.alpha)
     cameras = [view.camera for view in views]
     tell_too_many(dataset, len(layout.cameras), problems)
     if len(cameras) == len(layout.cameras):

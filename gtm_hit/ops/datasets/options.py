@@ -110,6 +110,7 @@ class ImportOptions:
     calibrations: Path | None = None
     annotations: Path | None = None
     undistort: bool = False
+    alpha: float | None = None  # with `undistort`: how much is kept; None: the files' camera matrix
     layer: str = "imported"
     layer_kind: str = Layer.Kind.IMPORTED.value
     hidden_layer: bool = False
@@ -134,6 +135,8 @@ def scene(options: ImportOptions, existing: Dataset | None, problems: ProblemLis
         values.update({name: getattr(existing, name) for name in SceneValues.__annotations__})
         _tell_contradictions(options, existing, problems)
     values.update(options.values)
+    if options.alpha is not None and not (options.undistort and 0 <= options.alpha <= 1):
+        problems.add("options", "alpha is from 0 to 1, and only where the lens is taken out")
     missing = [option for name, option in REQUIRED.items() if name not in values]
     if missing:
         problems.add("options", f"not known: {', '.join(missing)}; or choose a --preset")

@@ -19,7 +19,7 @@ from django.conf import settings
 from django.core.files.storage import FileSystemStorage, default_storage
 from django.db.models import Q
 
-from gtm_hit.models import Image
+from gtm_hit.models import BoardPicture, DeskPicture, Image
 
 KEPT = timedelta(days=1)
 TOGETHER = 400  # digests in one query
@@ -63,11 +63,18 @@ def _old_files(now: datetime) -> Iterator[Path]:
 
 def _remove_unused(paths: Sequence[Path]) -> int:
     digests = {path.stem for path in paths}
-    used: set[str] = set()
-    rows = Image.objects.filter(Q(light_digest__in=digests) | Q(full_digest__in=digests))
-    for pair in rows.values_list("light_digest", "full_digest"):
-        used.update(pair)
+    used = _used(digests)
     unused = [path for path in paths if path.stem not in used]
     for path in unused:
         path.unlink(missing_ok=True)
     return len(unused)
+
+
+def _used(digests: set[str]) -> set[str]:
+    """By frames, or on a desk, where undoing may bring pictures back."""
+    used: set[str] = set()
+    either = Q(light_digest__in=digests) | Q(full_digest__in=digests)
+    for rows in (Image.objects, BoardPicture.objects, DeskPicture.objects):
+        for pair in rows.filter(either).values_list("light_digest", "full_digest"):
+            used.update(pair)
+    return used

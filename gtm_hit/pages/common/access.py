@@ -12,6 +12,7 @@ from django.urls import reverse
 from django.utils.translation import gettext as _
 
 from gtm_hit.models import Dataset
+from gtm_hit.ops.access.desks import desk_verdict
 from gtm_hit.ops.access.roles import Roles, Verdict, may, may_everywhere, verdict
 
 View = Callable[..., HttpResponseBase]
@@ -33,6 +34,8 @@ def to_login(request: HttpRequest) -> HttpResponseBase:
 def needs(roles: Roles, write: Roles | None = None, everywhere: bool = False) -> Callable[[View], View]:
     """Only for who has one of the roles for the dataset in the address (`slug`), or for any if there is none.
 
+    An address of a calibration desk (`desk`) is its dataset's; without a dataset it takes the role for all.
+
     `write`: what anything but reading takes. `everywhere`: the role for one dataset is not enough.
     Strangers are sent to the login page; who is known but may not gets 403, and 404 for a dataset he has
     nothing to do with.
@@ -53,6 +56,13 @@ def needs(roles: Roles, write: Roles | None = None, everywhere: bool = False) ->
 
 
 def refuse_unless_may(request: HttpRequest, roles: Roles, everywhere: bool = False, **address: Any) -> None:
+    if "desk" in address:
+        told = desk_verdict(request.user, roles, address["desk"])
+        if told is Verdict.HIDDEN:
+            raise Http404(_("There is no desk “%(slug)s”.") % {"slug": address["desk"]})
+        if told is Verdict.MAY_NOT:
+            raise PermissionDenied
+        return
     if "slug" not in address:
         if not (may_everywhere if everywhere else may)(request.user, roles):
             raise PermissionDenied

@@ -58,6 +58,13 @@ class SceneForm(forms.Form):
         required=False,
         choices=[("", gettext_lazy("the preset's, or metres")), *UNITS.items()],
     )
+    alpha = forms.FloatField(
+        label=gettext_lazy("Kept without lens, 0 to 1"),
+        required=False,
+        min_value=0,
+        max_value=1,
+        help_text=gettext_lazy("0: no black rim; 1: nothing seen is lost. Empty: the files' camera matrix."),
+    )
 
     usual_values = SceneValues()  # where neither form nor preset nor dataset says anything
 
@@ -92,6 +99,7 @@ class SceneForm(forms.Form):
             "preset": cleaned["preset"] or None,
             "tvec_unit": cleaned["tvec_unit"] or None,
             "values": self.values(),
+            "alpha": cleaned.get("alpha"),
         }
 
     def scene_fields(self) -> list[forms.BoundField]:

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from gtm_hit.formats.calibration.cameras_json import load_taken, save_cameras
+from gtm_hit.geometry.undistorting import kept_matrix
 from gtm_hit.models import Dataset
 from gtm_hit.ops.datasets.importing import ImportFailed, import_dataset
 from tests.conftest import REPOSITORY
@@ -102,3 +103,21 @@ def test_the_taken_lens_is_the_only_one_where_no_other_is_told(folder: Path) -> 
     edit(path, 0, original={"matrix": [[280.0, 0, 161], [0, 280.0, 119], [0, 0, 1]]})
     assert [camera.matrix[0, 0] for camera in load_taken(path)] == [280.0, 300.0, 300.0]
     assert [camera.name for camera in load_taken(path)] == list(NAMES)
+
+
+def test_alpha_chooses_how_much_is_kept_without_the_lens(folder: Path) -> None:
+    lens = {"matrix": [[280.0, 0, 161], [0, 280.0, 119], [0, 0, 1]], "distortion": [-0.2, 0, 0, 0, 0]}
+    for index in range(3):
+        edit(folder / "calibrations" / "cameras.json", index, original=lens)
+    taken = load_taken(folder / "calibrations" / "cameras.json")
+    dataset = import_dataset(options(folder, undistort=True, alpha=0.25)).dataset
+    for camera, there in zip(dataset.calibrated_cameras(), taken, strict=True):
+        assert camera.matrix == pytest.approx(kept_matrix(there, 0.25))
+        assert camera.matrix[0, 0] != MATRIX[0, 0]
+
+
+@pytest.mark.parametrize("changes", [{"alpha": 0.5}, {"alpha": 1.5, "undistort": True}])
+def test_an_alpha_without_sense_is_refused(folder: Path, changes: dict[str, object]) -> None:
+    assert failure(folder, **changes) == [
+        "options: alpha is from 0 to 1, and only where the lens is taken out"
+    ]

@@ -36,7 +36,7 @@ class Plan:
 
     def time(self, source: VideoSource, number: int) -> float:
         """When a frame is in a video, seconds."""
-        return number / self.rate + source.offset
+        return source.time(number / self.rate)
 
 
 def with_usual_values(options: VideoOptions) -> VideoOptions:
@@ -99,7 +99,7 @@ def _check_calibration(
     names = list(dict.fromkeys(source.camera for source in sources))
     files = find_calibrations(DatasetFolder(options.folder, problems), names, options.calibrations)
     sizes = {name: (each.width, each.height) for name, each in facts.items()}
-    views = read_views(files, names, sizes, options.unit, options.undistort, problems)
+    views = read_views(files, names, sizes, options.unit, options.undistort, problems, options.alpha)
     cameras = [view.camera for view in views]
     for camera in cameras:
         _tell_other_size(camera, problems)
@@ -131,8 +131,8 @@ def _numbers(
     """Frame numbers that lie in all videos, half an interval of tolerance at both ends."""
     spans = {
         source.camera: (
-            -source.offset - facts[source.camera].interval / 2,
-            facts[source.camera].duration - source.offset - facts[source.camera].interval / 2,
+            (-source.offset - facts[source.camera].interval / 2) / source.pace,
+            (facts[source.camera].duration - source.offset - facts[source.camera].interval / 2) / source.pace,
         )
         for source in sources
     }

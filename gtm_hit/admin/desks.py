@@ -1,0 +1,59 @@
+"""Calibrations being made, and what was done for them."""
+
+from __future__ import annotations
+
+from django.contrib import admin
+
+from gtm_hit.admin.look_only import LookOnlyAdmin
+from gtm_hit.models import BoardPicture, Click, Desk, DeskCamera, DeskEdit, DeskPicture, MeasuredPoint
+
+
+@admin.register(Desk)
+class DeskAdmin(LookOnlyAdmin):
+    list_display = ["slug", "title", "dataset", "created_by", "created_at"]
+    list_select_related = ["dataset", "created_by"]
+    search_fields = ["slug", "title"]
+
+
+@admin.register(DeskCamera)
+class DeskCameraAdmin(LookOnlyAdmin):
+    list_display = ["desk", "index", "name", "width", "height"]
+    list_select_related = ["desk"]
+    search_fields = ["desk__slug", "name"]
+    exclude = ["lens_report", "pose_report"]
+
+
+@admin.register(BoardPicture)
+class BoardPictureAdmin(LookOnlyAdmin):
+    list_display = ["camera", "name", "used", "reason"]
+    list_select_related = ["camera"]
+    search_fields = ["name"]
+    exclude = ["found"]
+
+
+@admin.register(MeasuredPoint)
+class MeasuredPointAdmin(LookOnlyAdmin):
+    list_display = ["desk", "number", "name", "x", "y", "z"]
+    list_select_related = ["desk"]
+    search_fields = ["desk__slug", "name"]
+
+
+@admin.register(Click)
+class ClickAdmin(LookOnlyAdmin):
+    list_display = ["camera", "point", "x", "y"]
+    list_select_related = ["camera", "point"]
+    search_fields = ["point__name"]
+
+
+@admin.register(DeskEdit)
+class DeskEditAdmin(LookOnlyAdmin):
+    list_display = ["desk", "number", "page", "what", "undone", "author", "at"]
+    list_select_related = ["desk", "author"]
+    search_fields = ["desk__slug", "what"]
+
+
+@admin.register(DeskPicture)
+class DeskPictureAdmin(LookOnlyAdmin):
+    list_display = ["desk", "full_digest"]
+    list_select_related = ["desk"]
+    search_fields = ["desk__slug", "full_digest"]

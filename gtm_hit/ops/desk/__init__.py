@@ -1,0 +1,1 @@
+"""Calibrations being made: drafts, clicks, solves, and putting them in place."""

@@ -1,0 +1,128 @@
+"""What can be changed by hand at a desk, each with how it is read and written. See `edits`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from gtm_hit.models import BoardPicture, Click, Desk, DeskCamera, MeasuredPoint
+from gtm_hit.ops.desk.errors import NotThere
+
+CLICK, POINT, LENS, PICTURE, BOARD_PICTURE = "click", "point", "lens", "picture", "board picture"
+
+
+@dataclass(frozen=True)
+class Thing:
+    read: Callable[[Desk, list[str]], Any]
+    write: Callable[[Desk, list[str], Any], None]
+
+
+def camera_of(desk: Desk, name: str) -> DeskCamera:
+    """Raises NotThere."""
+    found = desk.cameras.filter(name=name).first()
+    if found is None:
+        raise NotThere(f"The desk has no camera {name}.")
+    return found
+
+
+def point_of(desk: Desk, name: str) -> MeasuredPoint:
+    """Raises NotThere."""
+    found = desk.points.filter(name=name).first()
+    if found is None:
+        raise NotThere(f"The desk has no point {name}.")
+    return found
+
+
+def read_click(desk: Desk, key: list[str]) -> list[float] | None:
+    """x and y, pixels, of [camera, point]."""
+    camera, point = key
+    found = Click.objects.filter(camera__desk=desk, camera__name=camera, point__name=point).first()
+    return [found.x, found.y] if found else None
+
+
+def write_click(desk: Desk, key: list[str], value: list[float] | None) -> None:
+    camera, point = camera_of(desk, key[0]), point_of(desk, key[1])
+    if value is None:
+        Click.objects.filter(camera=camera, point=point).delete()
+        return
+    x, y = value
+    Click.objects.update_or_create(camera=camera, point=point, defaults={"x": x, "y": y})
+
+
+def read_point(desk: Desk, key: list[str]) -> list[float] | None:
+    """Number, x, y, z of [name]."""
+    found = desk.points.filter(name=key[0]).first()
+    return [found.number, found.x, found.y, found.z] if found else None
+
+
+def write_point(desk: Desk, key: list[str], value: list[float] | None) -> None:
+    if value is None:
+        desk.points.filter(name=key[0]).delete()
+        return
+    number, x, y, z = value
+    defaults = {"number": int(number), "x": x, "y": y, "z": z}
+    MeasuredPoint.objects.update_or_create(desk=desk, name=key[0], defaults=defaults)
+
+
+def read_lens(desk: Desk, key: list[str]) -> dict[str, Any] | None:
+    """Lens, report and size of [camera]: what one solve or one file gave together."""
+    camera = camera_of(desk, key[0])
+    if camera.lens is None:
+        return None
+    size = [camera.width, camera.height]
+    return {"lens": camera.lens, "report": camera.lens_report, "size": size}
+
+
+def write_lens(desk: Desk, key: list[str], value: dict[str, Any] | None) -> None:
+    camera = camera_of(desk, key[0])
+    if value is None:
+        camera.lens, camera.lens_report = None, {}
+        if not camera.full_digest:
+            camera.width = camera.height = 0
+    else:
+        camera.lens, camera.lens_report = value["lens"], value["report"]
+        camera.width, camera.height = value["size"]
+    camera.save(update_fields=["lens", "lens_report", "width", "height"])
+
+
+def read_picture(desk: Desk, key: list[str]) -> list[Any] | None:
+    """Digests light and full, width and height of the picture of the ground of [camera]."""
+    camera = camera_of(desk, key[0])
+    if not camera.full_digest:
+        return None
+    return [camera.light_digest, camera.full_digest, camera.width, camera.height]
+
+
+def write_picture(desk: Desk, key: list[str], value: list[Any] | None) -> None:
+    camera = camera_of(desk, key[0])
+    if value is None:
+        camera.light_digest = camera.full_digest = ""
+        if camera.lens is None:
+            camera.width = camera.height = 0
+    else:
+        camera.light_digest, camera.full_digest, camera.width, camera.height = value
+    camera.save(update_fields=["light_digest", "full_digest", "width", "height"])
+
+
+def read_board_picture(desk: Desk, key: list[str]) -> bool | None:
+    """Whether the picture [camera, name] is used."""
+    camera, name = key
+    rows = BoardPicture.objects.filter(camera__desk=desk, camera__name=camera, name=name)
+    return rows.values_list("used", flat=True).first()
+
+
+def write_board_picture(desk: Desk, key: list[str], value: bool | None) -> None:
+    camera, name = key
+    rows = BoardPicture.objects.filter(camera__desk=desk, camera__name=camera, name=name)
+    if value is None or not rows.update(used=value):
+        raise NotThere(f"The camera {camera} has no picture {name}.")
+
+
+THINGS: dict[str, Thing] = {
+    CLICK: Thing(read_click, write_click),
+    POINT: Thing(read_point, write_point),
+    LENS: Thing(read_lens, write_lens),
+    PICTURE: Thing(read_picture, write_picture),
+    BOARD_PICTURE: Thing(read_board_picture, write_board_picture),
+}
