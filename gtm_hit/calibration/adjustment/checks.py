@@ -35,6 +35,8 @@ def check(problem: Problem) -> None:
     _check_seen(problem, problem.measured_seen, len(problem.measured), "measured point")
     if not np.isfinite(problem.measured).all():
         raise AdjustmentError("A measured point has a coordinate that is no number.")
+    if np.isinf(problem.points).any():
+        raise AdjustmentError("A point starts at an infinite coordinate.")
     _check_same_places(problem)
     if not len(problem.seen.pixels) + len(problem.measured_seen.pixels):
         raise AdjustmentError("Nothing was clicked.")
@@ -63,9 +65,9 @@ def usable(problem: Problem, seen: Seen) -> tuple[Seen, tuple[str, ...]]:
     unmet = _unmet(problem, seen) & ~single
     notices = []
     if single.any():
-        notices.append(f"{_points(single)} in one view only: left out, nothing tells how far away.")
+        notices.append(_told(single, "seen in one view only and left out"))
     if unmet.any():
-        notices.append(f"{_points(unmet)} along parallel rays, and no place was given: left out.")
+        notices.append(_told(unmet, "seen along parallel rays, placed by nobody, and left out"))
     kept = seen.where(~(single | unmet)[seen.points])
     _check_connected(problem, kept)
     return kept, tuple(notices)
@@ -81,9 +83,9 @@ def doubts(rows: Floats, points: Floats, seen: Seen, free: int) -> tuple[str, ..
     behind[seen.points[depths(rows, points, seen) <= 0]] = True
     sentences = []
     if narrow.any():
-        sentences.append(f"{_points(narrow)} along rays less than {NARROW:g}° apart: how far away is open.")
+        sentences.append(_told(narrow, f"seen along rays less than {NARROW:g}° apart, at no sure distance"))
     if behind.any():
-        sentences.append(f"{_points(behind)} by a camera that has them behind it: look at these clicks.")
+        sentences.append(_told(behind, "clicked in a view whose camera has them behind it"))
     return tuple(sentences)
 
 
@@ -216,11 +218,11 @@ def _unmet(problem: Problem, seen: Seen) -> Flags:
     return unknown & ~met & seen_at_all
 
 
-def _points(which: Flags) -> str:
+def _told(which: Flags, what: str) -> str:
     numbers = np.flatnonzero(which)
     shown = ", ".join(map(str, numbers[:NAMED])) + (" …" if numbers.size > NAMED else "")
-    noun = "point is" if numbers.size == 1 else "points are"
-    return f"{numbers.size} {noun} seen ({shown})"
+    noun = "point was" if numbers.size == 1 else "points were"
+    return f"{numbers.size} {noun} {what}: {shown}."
 
 
 def _within(places: NDArray[np.int64], count: int) -> bool:

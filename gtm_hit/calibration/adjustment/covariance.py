@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from gtm_hit.calibration.adjustment.errors import AdjustmentError
 from gtm_hit.calibration.adjustment.normal import reduced
+from gtm_hit.calibration.adjustment.one_thread import product, solution
 from gtm_hit.calibration.adjustment.residuals import derivatives, huber
 from gtm_hit.calibration.adjustment.system import System
 
@@ -35,14 +36,16 @@ def uncertainty(system: System, rows: Floats, points: Floats) -> Uncertainty:
     free = np.flatnonzero(system.free.ravel())
     scale = 1 / np.sqrt(np.diag(left))
     try:
-        inverse = np.linalg.inv(left * scale * scale[:, None]) * scale * scale[:, None]
+        scaled = solution(left * scale * scale[:, None], np.eye(len(left)))
     except np.linalg.LinAlgError as error:
         raise AdjustmentError(
             "The clicks do not determine all that may move: hold more of it, or click more."
         ) from error
+    inverse = scaled * scale * scale[:, None]
+    pulls = _pulls(system, rows, points)[np.ix_(free, free)]
     views, width = rows.shape
     covariance = np.zeros((views * width, views * width))
-    covariance[np.ix_(free, free)] = inverse @ _pulls(system, rows, points)[np.ix_(free, free)] @ inverse
+    covariance[np.ix_(free, free)] = product(product(inverse, pulls), inverse)
     blocks = np.array([covariance[k : k + width, k : k + width] for k in range(0, views * width, width)])
     numbers = np.sqrt(np.maximum(np.diagonal(blocks, axis1=1, axis2=2), 0.0))
     return Uncertainty(numbers, _centre_sigmas(rows, blocks), blocks)
@@ -59,7 +62,9 @@ def _pulls(system: System, rows: Floats, points: Floats) -> Floats:
     flat = by_point.reshape(len(points), -1)
     told = 2 * len(seen.pixels) - 3 * int(system.movable.sum())
     spare = max(told - int(system.free.sum()), 1)
-    return flat.T @ flat * max(told, 1) / spare + np.diag(system.cameras_known.information.ravel())
+    return product(flat.T, flat.copy()) * max(told, 1) / spare + np.diag(
+        system.cameras_known.information.ravel()
+    )
 
 
 def _centre_sigmas(rows: Floats, blocks: Floats) -> Floats:

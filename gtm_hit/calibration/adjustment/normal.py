@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gtm_hit.calibration.adjustment.one_thread import product, solution
 from gtm_hit.calibration.adjustment.residuals import Seen
 
 Floats = NDArray[np.float64]
@@ -55,9 +56,9 @@ def normal_equations(
     cameras, slopes = np.zeros((views, width, width)), np.zeros((views, width))
     for view in range(views):
         part = seen.of(view)
-        flat = weighted[part].reshape(-1, width)
-        cameras[view] = flat.T @ by_camera[part].reshape(-1, width)
-        slopes[view] = flat.T @ missed[part].ravel()
+        beside = np.column_stack((by_camera[part].reshape(-1, width), missed[part].ravel()))
+        both = product(weighted[part].reshape(-1, width).T, beside)
+        cameras[view], slopes[view] = both[:, :-1], both[:, -1]
     points, point_slopes = point_equations(seen, missed, by_point, counted, len(movable))
     mixed = np.swapaxes(weighted, 1, 2) @ by_point
     return Normal(cameras, slopes, points, point_slopes, mixed, seen, free, movable)
@@ -90,8 +91,9 @@ def reduced(normal: Normal, damping: float) -> Reduced:
     slopes = normal.camera_slopes.ravel()[places].copy()
     inverse = _inverse_points(normal, damping)
     for across, onto in _eliminated(normal, inverse):
-        matrix -= across @ across.T
-        slopes -= across @ onto
+        both = product(across, np.column_stack((across.T, onto)))
+        matrix -= both[:, :-1]
+        slopes -= both[:, -1]
     return Reduced(matrix, slopes, inverse)
 
 
@@ -101,7 +103,7 @@ def camera_steps(normal: Normal, system: Reduced) -> Floats:
     scale = 1 / np.sqrt(np.diag(system.matrix))
     scaled = system.matrix * scale * scale[:, None]
     steps = np.zeros_like(normal.camera_slopes)
-    steps[normal.free] = -np.linalg.solve(scaled, system.slopes * scale) * scale
+    steps[normal.free] = -solution(scaled, (system.slopes * scale)[:, None])[:, 0] * scale
     return steps
 
 

@@ -102,12 +102,13 @@ def file_of(problem: Problem, views: tuple[View, ...], points: Floats) -> BaProb
 
 
 def feet_of_pairs(points: Floats) -> NDArray[np.bool_]:
-    """Which points are feet, as far as one can tell: the next point stands above them as high as a person."""
+    """Which points are feet, as far as one can tell: a neighbour in the list is one person higher."""
     feet = np.zeros(len(points), dtype=bool)
-    if len(points) > 1:
-        away = np.diff(points, axis=0)
-        near = np.hypot(away[:, 0], away[:, 1]) < FEET_APART
-        feet[:-1] = near & (away[:, 2] > PEOPLE_HEIGHTS[0]) & (away[:, 2] < PEOPLE_HEIGHTS[1])
+    away = np.diff(points, axis=0)
+    near = np.hypot(away[:, 0], away[:, 1]) < FEET_APART
+    least, most = PEOPLE_HEIGHTS
+    feet[:-1] |= near & (away[:, 2] > least) & (away[:, 2] < most)
+    feet[1:] |= near & (-away[:, 2] > least) & (-away[:, 2] < most)
     return feet
 
 

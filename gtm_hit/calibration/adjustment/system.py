@@ -53,7 +53,7 @@ class System:
     def cost(self, rows: Floats, points: Floats) -> Cost:
         halves = huber(misses(rows, points, self.seen), self.turn)[0]
         known = self.cameras_known.cost(rows) + self.points_known.cost(points)
-        return Cost(float(self.seen.weights @ halves), known)
+        return Cost(float((self.seen.weights * halves).sum()), known)
 
     def normal(self, rows: Floats, points: Floats, curved: bool = False) -> Normal:
         """The equations of a step; `curved`: as much as the cost is really curved, which is less.

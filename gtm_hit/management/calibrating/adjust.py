@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from argparse import ArgumentParser, ArgumentTypeError
+from argparse import ArgumentParser
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -24,6 +24,7 @@ from gtm_hit.formats.calibration.cameras_json import save_cameras
 from gtm_hit.formats.files import write_bytes
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.management.calibrating.interrupting import Interrupts
+from gtm_hit.management.calibrating.reading import add_image_size
 
 HELP = "Adjust all cameras and points of a ba_problem.txt at once."
 SAID_EVERY = 20  # steps
@@ -38,13 +39,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         help="what of the lenses may move (soft: held near those of the file)",
     )
     parser.add_argument("--unit", choices=sorted(PER_METRE), default="cm", help="of the file's lengths (cm)")
-    parser.add_argument(
-        "--image-size",
-        type=image_size,
-        default=(1920, 1080),
-        metavar="W×H",
-        help="of the pictures, which the file does not tell (1920x1080)",
-    )
+    add_image_size(parser)
     parser.add_argument("--names", help="of the cameras, divided by commas (C1,C2,…)")
     parser.add_argument(
         "--hold",
@@ -95,13 +90,6 @@ def run(options: dict[str, Any], say: Callable[[str], object]) -> dict[str, Any]
     if options["state"]:
         options["state"].unlink(missing_ok=True)
     return told
-
-
-def image_size(text: str) -> tuple[int, int]:
-    width, _, height = text.replace("×", "x").partition("x")
-    if not (width.isdecimal() and height.isdecimal() and int(width) and int(height)):
-        raise ArgumentTypeError(f"{text} is no size such as 1920x1080")
-    return int(width), int(height)
 
 
 def read_problem(options: dict[str, Any]) -> Problem:

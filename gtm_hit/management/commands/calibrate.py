@@ -5,7 +5,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
-from gtm_hit.management.calibrating import adjust, board, ground, lens, sync, undistort
+from gtm_hit.management.calibrating import adjust, board, check, export, ground, lens, sync, undistort
 from gtm_hit.management.calibrating.step import Step
 
 STEPS: dict[str, Step] = {
@@ -13,7 +13,9 @@ STEPS: dict[str, Step] = {
     "board": board,
     "ground": ground,
     "adjust": adjust,
+    "check": check,
     "undistort": undistort,
+    "export": export,
     "sync": sync,
 }
 

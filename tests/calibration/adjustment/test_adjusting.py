@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +16,7 @@ from gtm_hit.calibration.adjustment.adjusting import Adjustment, adjust
 from gtm_hit.calibration.adjustment.checks import usable
 from gtm_hit.calibration.adjustment.errors import AdjustmentError
 from gtm_hit.calibration.adjustment.normal import reduced
+from gtm_hit.calibration.adjustment.one_thread import product, solution
 from gtm_hit.calibration.adjustment.parameters import packed
 from gtm_hit.calibration.adjustment.problem import NOBODY, Problem
 from gtm_hit.calibration.adjustment.residuals import derivatives, misses
@@ -20,6 +24,7 @@ from gtm_hit.calibration.adjustment.settings import Settings, Variant
 from gtm_hit.calibration.adjustment.state import State
 from gtm_hit.calibration.adjustment.system import all_points, observations, system_of
 from tests.calibration.adjustment.scene import centres_off, scene
+from tests.conftest import REPOSITORY
 
 
 def bytes_of(result: Adjustment) -> bytes:
@@ -136,6 +141,32 @@ def test_measured_points_that_may_be_off_are_moved_by_their_sigma_at_most_somewh
 def test_the_same_input_gives_the_same_bytes() -> None:
     problem, _ = scene()
     assert bytes_of(adjust(problem)) == bytes_of(adjust(problem))
+
+
+@pytest.mark.parametrize("threads", ["1", "2"])
+def test_the_bytes_do_not_depend_on_the_cores(threads: str) -> None:
+    problem, _ = scene(cameras=7, crowd=150)
+    code = (
+        "from tests.calibration.adjustment.scene import scene\n"
+        "from tests.calibration.adjustment.test_adjusting import adjust, bytes_of\n"
+        "print(bytes_of(adjust(scene(cameras=7, crowd=150)[0])).hex())"
+    )
+    environment = os.environ | {"OPENBLAS_NUM_THREADS": threads}
+    command = [sys.executable, "-c", code]
+    told = subprocess.run(
+        command, cwd=REPOSITORY, env=environment, capture_output=True, text=True, check=True
+    )
+    assert told.stdout.strip() == bytes_of(adjust(problem)).hex()
+
+
+def test_elimination_solves_what_numpy_solves_and_refuses_what_is_not_positive() -> None:
+    rng = np.random.default_rng(1)
+    root, right = rng.normal(size=(40, 60)), rng.normal(size=(40, 3))
+    matrix = product(root, root.T.copy())
+    np.testing.assert_allclose(matrix, root @ root.T, rtol=1e-12)
+    np.testing.assert_allclose(solution(matrix, right), np.linalg.solve(matrix, right), rtol=1e-8)
+    with pytest.raises(np.linalg.LinAlgError):
+        solution(-matrix, right)
 
 
 def test_stopped_after_every_step_and_kept_as_json_it_ends_with_the_same_bytes() -> None:

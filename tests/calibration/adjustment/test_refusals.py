@@ -110,7 +110,7 @@ def test_points_in_one_view_are_left_out_and_told() -> None:
     kept = ~((problem.seen.cameras == 1) & (problem.seen.points == problem.seen.points[0]))
     result = adjust(replace(problem, seen=only(problem.seen, kept)), Variant.FIXED)
     assert np.isnan(result.points[problem.seen.points[0]]).all()
-    assert any("in one view only: left out" in notice for notice in result.notices)
+    assert any("in one view only and left out" in notice for notice in result.notices)
 
 
 def test_a_point_in_one_view_whose_height_is_known_is_found() -> None:

@@ -76,4 +76,4 @@ def test_the_words_name_each_camera_and_what_was_left_out() -> None:
     result = adjust(problem)
     told = "\n".join(lines(result, report_of(result)))
     assert all(f"\n{name}: " in told for name in problem.names)
-    assert "in one view only: left out" in told
+    assert "in one view only and left out" in told
