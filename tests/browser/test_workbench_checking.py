@@ -21,13 +21,9 @@ from gtm_hit.ops.proposals.tracks import link_run
 from gtm_hit.ops.work import assignments, batches, workers
 from tests.browser.scripted import Checker, Clicker, Feet
 from tests.browser.street import GRID, workbench_path
-from tests.demo_frames import GROUP, LookedAt
+from tests.demo_frames import LookedAt
 
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.django_db(transaction=True),
-    pytest.mark.xdist_group(GROUP),
-]
+pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
 FRAMES = 2
 
