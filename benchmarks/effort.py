@@ -133,14 +133,20 @@ def nearest_pairs(before: list[int], after: list[int], fastest: float) -> list[t
     return pairs
 
 
-def annotate(browser: Browser, frames: list[dict[int, int]], plan: dict[str, Any]) -> dict[str, Any]:
+def annotate(
+    browser: Browser,
+    frames: list[dict[int, int]],
+    plan: dict[str, Any],
+    proposed: dict[str, Any] | None = None,
+) -> dict[str, Any]:
     page = browser.new_context(viewport=SCREEN).new_page()
     page.set_default_timeout(0)
     page.on("pageerror", lambda error: sys.exit(f"{plan}: {error}"))
     page.route(ADDRESS + "**", answer)
     page.goto(ADDRESS)
     told = {**scene(len(frames)), "proposed": "proposals" in plan}
-    job = {"scene": told, "truth": frames, "plan": plan, "seed": SEED, "proposed": proposals(frames)}
+    proposed = proposed or proposals(frames)
+    job = {"scene": told, "truth": frames, "plan": plan, "seed": SEED, "proposed": proposed}
     report: dict[str, Any] = page.evaluate(
         "async (job) => (await import('/benchmarks/effort.js')).work(job)", job
     )
@@ -162,11 +168,11 @@ def proposals(frames: list[dict[int, int]]) -> dict[str, Any]:
     return {"run": 1, "threshold": 0.5, "frames": found}
 
 
-def person(number: int, track: int, xy: Any) -> dict[str, Any]:
+def person(number: int, track: int, xy: Any, score: float = 0.9) -> dict[str, Any]:
     inside = np.clip(xy, (-3, -9), (8.97, 26.97))
     return {
         **{"id": number, "position": int(GRID.position([inside])[0]), "track": track, "person": None},
-        **{"height": None, "radius": None, "score": 0.9, "doubt": 0.1, "evidence": []},
+        **{"height": None, "radius": None, "score": score, "doubt": 1 - score, "evidence": []},
         **{"seated": False, "filled": False},
     }
 

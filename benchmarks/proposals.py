@@ -158,12 +158,12 @@ def clustered(example: Example, kept: Kept) -> Iterator[Row]:
 def batch_row(example: Example, detector: Detector) -> Row:
     """By the clock, as a job does it: reading, background, detector, cover, placing."""
     cv2.setNumThreads(CORES)
-    start, used = time.perf_counter(), time.process_time()
+    load, start, used = os.getloadavg()[0], time.perf_counter(), time.process_time()
     propose(example.frames, example.scene.cameras, example.scene.grid, detector=detector)
     wall, processor = time.perf_counter() - start, time.process_time() - used
     cv2.setNumThreads(1)
     views = len(example.scene.cameras)
-    words = f"{wall:.1f} s by the clock, {processor:.1f} s of {CORES} processors"
+    words = f"{wall:.1f} s by the clock, {processor:.1f} s of {CORES} processors; load before {load:.1f}"
     return Row(f"{example.name}, {len(example.frames)} × {views} pictures", note=words)
 
 

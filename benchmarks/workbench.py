@@ -129,14 +129,14 @@ def chosen_parts() -> list[str]:
 
 
 @contextmanager
-def server(folder: Path) -> Iterator[tuple[str, dict[str, str]]]:
-    """A production-like server of its own; yields its address and the paths to the workbenches."""
-    environment = {**os.environ, "DATA_DIR": str(folder), "SECRET_KEY": "b" * 50, "LOG_LEVEL": "WARNING"}
+def server(folder: Path, seed: str = SEED) -> Iterator[tuple[str, dict[str, Any]]]:
+    """A production-like server of its own; yields its address and what the seed printed."""
+    environment = environment_in(folder)
     manage = [sys.executable, "manage.py"]
     for command in (["migrate", "-v0"], ["collectstatic", "--noinput", "-v0"]):
         subprocess.run([*manage, *command], cwd=ROOT, env=environment, check=True)
     seeded = subprocess.run(
-        [*manage, "shell", "-v0", "-c", SEED],
+        [*manage, "shell", "-v0", "-c", seed],
         cwd=ROOT,
         env=environment,
         check=True,
@@ -164,6 +164,10 @@ def server(folder: Path) -> Iterator[tuple[str, dict[str, str]]]:
     finally:
         process.terminate()
         process.wait()
+
+
+def environment_in(folder: Path) -> dict[str, str]:
+    return {**os.environ, "DATA_DIR": str(folder), "SECRET_KEY": "b" * 50, "LOG_LEVEL": "WARNING"}
 
 
 def wait_for(address: str) -> None:

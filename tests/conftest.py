@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck
 from hypothesis import settings as hypothesis_settings
 
-from tests.demo_frames import LookedAt, look
+from tests.demo_frames import LookedAt, look_once
 from tests.prolific_server import Prolific, prolific_server
 
 REPOSITORY = Path(__file__).resolve().parent.parent
@@ -30,7 +31,9 @@ def shared_data() -> Path:
 @pytest.fixture(scope="session")
 def demo_frames(tmp_path_factory: pytest.TempPathFactory) -> LookedAt:
     """The demo scene's first ten frames and whom the built-in detector finds in them."""
-    return look(tmp_path_factory.mktemp("demo"))
+    own = tmp_path_factory.getbasetemp()
+    shared = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
+    return look_once(shared / "demo-frames")
 
 
 @pytest.fixture

@@ -1,8 +1,10 @@
-"""The demo scene's first frames, looked at by the built-in detector, once for all tests of a process."""
+"""The demo scene's first frames, looked at by the built-in detector, once for all processes of a test run."""
 
 from __future__ import annotations
 
+import fcntl
 import os
+import pickle
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,8 +16,6 @@ from gtm_hit.vision.background import Backgrounds
 from gtm_hit.vision.boxes import Box
 from gtm_hit.vision.people import FrameProposals
 from gtm_hit.vision.proposing import Method, Proposer, Settings
-
-GROUP = "demo frames"  # of pytest-xdist: one process renders them
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,18 @@ def detector_or_skip() -> detectors.NanoDet:
         if found := detectors.built_in(folder):
             return found
     pytest.skip("the person detector is not there: `make detector` fetches it")
+
+
+def look_once(folder: Path) -> LookedAt:
+    """Whichever process comes first looks, the others wait for it and read what it found."""
+    folder.mkdir(exist_ok=True)
+    kept = folder / "looked-at.pickle"
+    with (folder / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not kept.exists():
+            kept.write_bytes(pickle.dumps(look(folder)))
+        looked: LookedAt = pickle.loads(kept.read_bytes())
+        return looked
 
 
 def look(folder: Path) -> LookedAt:

@@ -9,6 +9,7 @@ import { HALO } from "./styles.js";
 
 const FONT = "600 11px system-ui, 'DejaVu Sans', sans-serif";
 const LINE = 15;
+const WIDE = 7.6; // of a letter, in the widest of the fonts
 const AWAY = 16; // from the pointer: the ground under it stays in sight
 
 /**
@@ -16,7 +17,7 @@ const AWAY = 16; // from the pointer: the ground under it stays in sight
  * @param {string} id @param {Size} room @param {XY} at @param {string[]} lines @param {string} colour @returns {Item}
  */
 export function readoutItem(id, room, at, lines, colour) {
-  const width = 6.6 * Math.max(...lines.map((line) => line.length)) + 12;
+  const width = WIDE * Math.max(...lines.map((line) => line.length)) + 12;
   const height = LINE * lines.length + 5;
   const left = at.x + AWAY + width > room.width ? at.x - AWAY - width : at.x + AWAY;
   const top = Math.min(Math.max(at.y + AWAY, 2), room.height - height - 2);

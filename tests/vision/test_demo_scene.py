@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import pytest
-
 from benchmarks.proposal_scores import linked, per_frame
-from tests.demo_frames import GROUP, LookedAt
-
-pytestmark = pytest.mark.xdist_group(GROUP)
+from tests.demo_frames import LookedAt
 
 
 def test_nine_of_ten_people_of_the_demo_scene_are_proposed_and_few_others(demo_frames: LookedAt) -> None:
