@@ -9,7 +9,16 @@ import numpy as np
 
 from gtm_hit.calibration.boards import FEWEST_CORNERS, Board, BoardKind, object_points
 from gtm_hit.calibration.markers import detect, without_markers
-from gtm_hit.calibration.reasons import why_briefly, why_circles, why_markers, why_squares, why_unusable
+from gtm_hit.calibration.reasons import (
+    BLURRED_WORDS,
+    edge_width,
+    too_small,
+    why_briefly,
+    why_circles,
+    why_markers,
+    why_squares,
+    why_unusable,
+)
 from gtm_hit.calibration.spotting import (
     chessboard_corners,
     circle_centres,
@@ -23,7 +32,7 @@ LOOKED_AT = 1280  # pixels, the longer side; corners are refined in the full pic
 SHARE = 2.5  # of the spacing: a window larger than this reaches the neighbouring corners
 CHARUCO_SHARE = 0.3  # the same where markers were painted over
 LARGEST_WINDOW = 24  # pixels, half a side; more only costs time
-SMALLEST_SPACING = 6.0  # pixels between two points; below it they cannot be told to a fraction of a pixel
+SOFT = 0.43  # of the spacing: where an edge of squares is wider, corners run into each other
 OFF_GRID = 0.35  # of the spacing, median distance from a plane grid: the points were put together wrongly
 REFINE = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 100, 1e-4)
 
@@ -41,7 +50,7 @@ def find_board(picture: Picture, board: Board, explain: bool = True) -> BoardVie
     if isinstance(found, NotFound):
         return found
     points = object_points(board)
-    return _checked(BoardView(picture.name, found, points, np.arange(len(points))), board)
+    return _checked(BoardView(picture.name, found, points, np.arange(len(points))), picture.grey, board)
 
 
 def _chessboard(picture: Picture, board: Board, explain: bool) -> Floats | NotFound:
@@ -50,7 +59,7 @@ def _chessboard(picture: Picture, board: Board, explain: bool) -> Floats | NotFo
     if corners is None:
         corners = largest_chessboard(small) if explain else None
         if corners is None or board.size not in {corners.shape[1::-1], corners.shape[:2]}:
-            return why_squares(picture.name, small, board, corners)
+            return why_squares(picture.name, small, scale, board, corners)
         if corners.shape[1::-1] != board.size:
             corners = corners.transpose(1, 0, 2)
     pixels = (corners.reshape(-1, 2) + 0.5) / scale - 0.5
@@ -76,7 +85,7 @@ def _charuco(picture: Picture, board: Board, explain: bool) -> BoardView | NotFo
         return NotFound(picture.name, "Only one line of the board's corners is seen; a plane is needed.")
     clean = without_markers(picture.grey, seen.markers, board)
     pixels = _refined(clean, seen.corners, _spacing_of(seen.corners, points, board) * CHARUCO_SHARE)
-    return _checked(BoardView(picture.name, pixels, points, seen.ids), board)
+    return _checked(BoardView(picture.name, pixels, points, seen.ids), picture.grey, board)
 
 
 def _refined(grey: Grey, pixels: Floats, window: float) -> Floats:
@@ -86,14 +95,13 @@ def _refined(grey: Grey, pixels: Floats, window: float) -> Floats:
     return corners.reshape(-1, 2).astype(np.float64)
 
 
-def _checked(view: BoardView, board: Board) -> BoardView | NotFound:
+def _checked(view: BoardView, grey: Grey, board: Board) -> BoardView | NotFound:
     """Refuses what no picture of a plane board can be: points too close, or not on a grid."""
     spacing = _spacing_of(view.pixels, view.points, board)
-    if spacing < SMALLEST_SPACING:
-        return NotFound(
-            view.name,
-            f"The board is too small in the picture: its points are {spacing:.1f} px apart. Hold it closer.",
-        )
+    if reason := too_small(spacing):
+        return NotFound(view.name, reason)
+    if not board.has_circles and edge_width(grey, view.pixels, spacing) > SOFT * spacing:
+        return NotFound(view.name, BLURRED_WORDS)
     homography, _ = cv2.findHomography(view.points[:, :2], view.pixels)
     if homography is None:
         return NotFound(view.name, "The points found lie on one line; a plane is needed.")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import cv2
@@ -10,6 +11,7 @@ import numpy as np
 
 from gtm_hit.calibration.lens_models import NAMES, LensModel
 from gtm_hit.calibration.lens_numbers import Lens
+from gtm_hit.calibration.lens_refinement import Refined, refine
 from gtm_hit.calibration.views import BoardView, Floats
 from gtm_hit.geometry.errors import GeometryError
 from gtm_hit.geometry.lens import distort, limit
@@ -17,7 +19,7 @@ from gtm_hit.geometry.lens import distort, limit
 FEWEST_VIEWS = 3
 FOLDS = 5  # groups of views that are held out in turn
 WORST = 50.0  # pixels RMS: more is no solution, whatever OpenCV calls it
-STOP = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 200, 1e-10)
+STOP = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 100, 1e-9)
 
 
 class LensError(GeometryError):
@@ -94,29 +96,26 @@ def solve_lens(
             f"A lens cannot be told from {have} of the board: "
             f"{FEWEST_VIEWS} are the least, 10 to 20 are good."
         )
-    raw = _solved(views, size, model, start=None)
-    lens = _lens(raw, size)
-    solved = tuple(_placed(view, lens, raw, index) for index, view in enumerate(views))
+    _check_finite(views)
+    start, poses = _started(views, size, model)
+    refined = refine(views, start, poses, model)
+    solved = tuple(_placed(view, refined.lens, pose) for view, pose in zip(views, refined.poses, strict=True))
     rms = _rms([view.residuals for view in solved])
-    held = _holdout(views, lens, model) if holdout else None
-    return LensSolution(lens, model, _sigma(raw, model), rms, held, solved)
+    held = _holdout(views, refined, model) if holdout else None
+    return LensSolution(refined.lens, model, refined.sigma, rms, held, solved)
 
 
-@dataclass(frozen=True, eq=False)
-class _Raw:
-    matrix: Floats
-    distortion: Floats
-    rvecs: Sequence[Floats]
-    tvecs: Sequence[Floats]
-    deviations: Floats
+def _check_finite(views: Sequence[BoardView]) -> None:
+    for view in views:
+        if not (np.isfinite(view.pixels).all() and np.isfinite(view.points).all()):
+            raise LensError(f"A point of {view.name} is not a finite number; leave this view out.")
 
 
-def _solved(views: Sequence[BoardView], size: tuple[int, int], model: LensModel, start: Lens | None) -> _Raw:
-    """Solved from OpenCV's own start, and where that leads nowhere from a plain one."""
-    starts = [start.matrix] if start else [None, _plain(size, 1.0), _plain(size, 2.5)]
-    best: tuple[float, _Raw] | None = None
-    for matrix in starts:
-        found = _attempt(views, size, model, matrix, start.distortion if start else None)
+def _started(views: Sequence[BoardView], size: tuple[int, int], model: LensModel) -> tuple[Lens, Floats]:
+    """OpenCV's lens and poses, from its own start, and where that leads nowhere from a plain one."""
+    best: tuple[float, Lens, Floats] | None = None
+    for matrix in (None, _plain(size, 1.0), _plain(size, 2.5)):
+        found = _attempt(views, size, model, matrix)
         if found and (best is None or found[0] < best[0]):
             best = found
         if best and best[0] < WORST / 10:
@@ -126,47 +125,46 @@ def _solved(views: Sequence[BoardView], size: tuple[int, int], model: LensModel,
             "No lens explains these views. Check the board's size and kind, and that all pictures come "
             "from one camera with one zoom; views that all look at the board straight on do not tell a lens."
         )
-    return best[1]
+    return best[1:]
 
 
 def _attempt(
-    views: Sequence[BoardView],
-    size: tuple[int, int],
-    model: LensModel,
-    matrix: Floats | None,
-    distortion: Floats | None,
-) -> tuple[float, _Raw] | None:
-    flags = model.flags
-    given = matrix is not None
-    if matrix is None:
-        # With a fixed aspect OpenCV reads the ratio from the matrix.
-        matrix = np.eye(3)
-    if given:
-        flags |= cv2.CALIB_USE_INTRINSIC_GUESS
-    numbers = np.zeros(model.length) if distortion is None else distortion.copy()
+    views: Sequence[BoardView], size: tuple[int, int], model: LensModel, matrix: Floats | None
+) -> tuple[float, Lens, Floats] | None:
+    """RMS, lens and poses by OpenCV; None where what it calls a success is none."""
+    guess = cv2.CALIB_USE_INTRINSIC_GUESS if matrix is not None else 0
+    # With a fixed aspect OpenCV reads the ratio from the matrix.
+    matrix = np.eye(3) if matrix is None else matrix
     points = [view.points.astype(np.float32) for view in views]
     pixels = [view.pixels.astype(np.float32).reshape(-1, 1, 2) for view in views]
     try:
-        rms, found, bent, rvecs, tvecs, deviations, _, _ = cv2.calibrateCameraExtended(
-            points, pixels, size, matrix.copy(), numbers, flags=flags, criteria=STOP
-        )
+        with _one_thread():
+            rms, found, bent, rvecs, tvecs = cv2.calibrateCamera(
+                points, pixels, size, matrix, np.zeros(model.length), flags=model.flags | guess, criteria=STOP
+            )
     except cv2.error:
         return None
-    raw = _Raw(
-        np.asarray(found, dtype=np.float64),
-        np.asarray(bent, dtype=np.float64).ravel()[: model.length],
-        [np.asarray(rvec, dtype=np.float64).ravel() for rvec in rvecs],
-        [np.asarray(tvec, dtype=np.float64).ravel() for tvec in tvecs],
-        np.asarray(deviations, dtype=np.float64).ravel(),
-    )
-    return (float(rms), raw) if _is_sane(raw, rms) else None
+    numbers = np.asarray(bent, dtype=np.float64).ravel()[: model.length]
+    lens = Lens(*size, np.asarray(found, dtype=np.float64), numbers)
+    poses = np.column_stack((np.reshape(rvecs, (-1, 3)), np.reshape(tvecs, (-1, 3)))).astype(np.float64)
+    return (float(rms), lens, poses) if _is_sane(lens, poses, rms) else None
 
 
-def _is_sane(raw: _Raw, rms: float) -> bool:
-    poses = np.column_stack((np.reshape(raw.rvecs, (-1, 3)), np.reshape(raw.tvecs, (-1, 3))))
-    numbers = (raw.matrix.ravel(), raw.distortion, poses.ravel(), [rms])
+@contextmanager
+def _one_thread() -> Iterator[None]:
+    """Several threads add up in another order each time, and the same views would give other digits."""
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        yield
+    finally:
+        cv2.setNumThreads(threads)
+
+
+def _is_sane(lens: Lens, poses: Floats, rms: float) -> bool:
+    numbers = (lens.matrix.ravel(), lens.distortion, poses.ravel(), [rms])
     finite = all(np.isfinite(values).all() for values in numbers)
-    return bool(finite and raw.matrix[0, 0] > 0 and raw.matrix[1, 1] > 0 and (poses[:, 5] > 0).all())
+    return bool(finite and lens.matrix[0, 0] > 0 and lens.matrix[1, 1] > 0 and (poses[:, 5] > 0).all())
 
 
 def _plain(size: tuple[int, int], factor: float) -> Floats:
@@ -175,13 +173,8 @@ def _plain(size: tuple[int, int], factor: float) -> Floats:
     return np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1.0]])
 
 
-def _lens(raw: _Raw, size: tuple[int, int]) -> Lens:
-    return Lens(*size, raw.matrix, raw.distortion)
-
-
-def _placed(view: BoardView, lens: Lens, raw: _Raw, index: int) -> SolvedView:
-    rvec, tvec = raw.rvecs[index], raw.tvecs[index]
-    return SolvedView(view, rvec, tvec, _residuals(view, lens, rvec, tvec))
+def _placed(view: BoardView, lens: Lens, pose: Floats) -> SolvedView:
+    return SolvedView(view, pose[:3], pose[3:], _residuals(view, lens, pose[:3], pose[3:]))
 
 
 def _residuals(view: BoardView, lens: Lens, rvec: Floats, tvec: Floats) -> Floats:
@@ -194,28 +187,21 @@ def _rms(residuals: Sequence[Floats]) -> float:
     return float(np.sqrt((every**2).sum() / len(every)))
 
 
-def _sigma(raw: _Raw, model: LensModel) -> dict[str, float]:
-    numbers = dict(zip(NAMES, raw.deviations.tolist(), strict=False))
-    if model.fixed_aspect:
-        numbers["fx"] = numbers["fy"] = max(numbers["fx"], numbers["fy"])
-    return {name: numbers[name] for name in model.solved}
-
-
-def _holdout(views: Sequence[BoardView], lens: Lens, model: LensModel) -> float | None:
+def _holdout(views: Sequence[BoardView], refined: Refined, model: LensModel) -> float | None:
     """RMS of views by lenses that were solved without them; only their poses are theirs."""
     folds = min(FOLDS, len(views))
     if len(views) - -(-len(views) // folds) < FEWEST_VIEWS:
         return None
-    size = (lens.width, lens.height)
-    residuals = []
+    residuals: list[Floats] = []
     for fold in range(folds):
-        rest = [view for index, view in enumerate(views) if index % folds != fold]
-        try:
-            other = _lens(_solved(rest, size, model, start=lens), size)
-        except LensError:
-            return None
-        residuals += [_posed(view, other) for view in views[fold::folds]]
-    return None if any(each is None for each in residuals) else _rms([r for r in residuals if r is not None])
+        rest = [index for index in range(len(views)) if index % folds != fold]
+        other = refine([views[index] for index in rest], refined.lens, refined.poses[rest], model).lens
+        for view in views[fold::folds]:
+            posed = _posed(view, other)
+            if posed is None:
+                return None
+            residuals.append(posed)
+    return _rms(residuals)
 
 
 def _posed(view: BoardView, lens: Lens) -> Floats | None:

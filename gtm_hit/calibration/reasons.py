@@ -21,7 +21,9 @@ from gtm_hit.calibration.views import Floats, Grey, NotFound, Picture
 
 LEAST_CONTRAST = 24  # grey levels between the darkest and the brightest hundredth
 BLURRED = 0.62  # of `blur`, 0 … 1; sharp photographs have 0.2 to 0.45
+BLURRED_WORDS = "The picture is blurred: hold the board still, or use more light."
 SMALLEST = 64  # pixels a side
+SMALLEST_SPACING = 6.0  # pixels between two points; below it they cannot be told to a fraction of a pixel
 FEWEST_SEEN = 12  # corners that say something about a board
 
 
@@ -68,6 +70,31 @@ def _nothing(board: Board) -> str:
     )
 
 
+def too_small(spacing: float) -> str | None:
+    if spacing >= SMALLEST_SPACING:
+        return None
+    return f"The board is too small in the picture: its points are {spacing:.1f} px apart. Hold it closer."
+
+
+def edge_width(grey: Grey, pixels: Floats, spacing: float) -> float:
+    """Pixels an edge around the board's points takes from dark to bright, the median."""
+    half = max(3, int(spacing / 2))
+    widths = []
+    for x, y in np.round(pixels).astype(int):
+        part = grey[max(0, y - half) : y + half + 1, max(0, x - half) : x + half + 1].astype(np.float64)
+        if min(part.shape) < 3:
+            continue
+        dark, bright = np.percentile(part, (5, 95))
+        steepest = np.percentile(np.hypot(*np.gradient(part)), 98)
+        widths.append((bright - dark) / max(steepest, 1e-9))
+    return float(np.median(widths)) if widths else 0.0
+
+
+def _spacing(corners: Floats) -> float:
+    steps = [np.linalg.norm(np.diff(corners, axis=axis), axis=2).min() for axis in (0, 1)]
+    return float(min(steps))
+
+
 def _blurred(grey: Grey) -> str | None:
     return (
         "The picture is blurred: hold the board still, or use more light." if blur(grey) > BLURRED else None
@@ -84,8 +111,10 @@ def why_briefly(picture: Picture, board: Board) -> NotFound:
     return NotFound(picture.name, _blurred(picture.grey) or _nothing(board))
 
 
-def why_squares(name: str, grey: Grey, board: Board, corners: Floats | None) -> NotFound:
-    """Why no chessboard was found, given the largest grid that is seen."""
+def why_squares(name: str, grey: Grey, scale: float, board: Board, corners: Floats | None) -> NotFound:
+    """Why no chessboard was found in a picture shrunk by `scale`, given the largest grid that is seen."""
+    if corners is not None and (reason := too_small(_spacing(corners) / scale)):
+        return NotFound(name, reason)
     if corners is None or corners.shape[0] * corners.shape[1] < FEWEST_SEEN:
         return NotFound(name, _blurred(grey) or _circles_instead(grey, board) or _nothing(board))
     rows, columns = corners.shape[:2]
@@ -108,12 +137,10 @@ def why_squares(name: str, grey: Grey, board: Board, corners: Floats | None) -> 
 
 
 def _circles_instead(grey: Grey, board: Board) -> str | None:
-    shifted = [circle_centres(grey, board.size, shifted) is not None for shifted in (False, True)]
-    return (
-        f"These are circles: say {BoardKind.ACIRCLES if shifted[1] else BoardKind.CIRCLES}."
-        if any(shifted)
-        else None
-    )
+    for kind in (BoardKind.CIRCLES, BoardKind.ACIRCLES):
+        if circle_centres(grey, board.size, kind is BoardKind.ACIRCLES) is not None:
+            return f"The board in this picture is of the kind {kind}, not {board.kind}."
+    return None
 
 
 def _other(board: Board, columns: int, rows: int) -> str:
@@ -140,31 +167,38 @@ def cut_at(corners: Floats, shape: tuple[int, ...]) -> list[str]:
 
 
 def why_circles(picture: Picture, board: Board) -> NotFound:
-    grey = picture.grey
-    for columns, rows in _neighbours(board):
-        if circle_centres(grey, (columns, rows), board.kind is BoardKind.ACIRCLES) is not None:
-            return NotFound(picture.name, _other(board, columns, rows), (columns, rows))
-    if reason := _blurred(grey) or _chessboard_instead(grey):
-        return NotFound(picture.name, reason)
+    grey, name = picture.grey, picture.name
+    if reason := _chessboard_instead(grey):
+        return NotFound(name, reason)
     seen, wanted = circle_count(grey), board.columns * board.rows
+    for columns, rows in _neighbours(board):
+        # A smaller grid is found within one that lacks a circle, too.
+        likely = columns * rows >= wanted or seen <= columns * rows
+        if likely and circle_centres(grey, (columns, rows), board.kind is BoardKind.ACIRCLES) is not None:
+            return NotFound(name, _other(board, columns, rows), (columns, rows))
+    if reason := _blurred(grey):
+        return NotFound(name, reason)
     if seen < wanted:
         return NotFound(
-            picture.name,
+            name,
             f"Only {seen} of {wanted} circles are seen: one that is cut off, hidden or too small, and the "
             "grid cannot be told.",
         )
     other = BoardKind.CIRCLES if board.kind is BoardKind.ACIRCLES else BoardKind.ACIRCLES
-    if circle_centres(grey, (board.columns, board.rows), other is BoardKind.ACIRCLES) is not None:
-        return NotFound(picture.name, f"The circles fit a board of the kind {other}, not {board.kind}.")
-    return NotFound(picture.name, _nothing(board))
+    if circle_centres(grey, board.size, other is BoardKind.ACIRCLES) is not None:
+        return NotFound(name, f"The board in this picture is of the kind {other}, not {board.kind}.")
+    return NotFound(name, _nothing(board))
 
 
 def _chessboard_instead(grey: Grey) -> str | None:
-    corners = largest_chessboard(shrunk(grey, 960)[0])
+    small, _ = shrunk(grey, 960)
+    corners = largest_chessboard(small)
     if corners is None or corners.shape[0] * corners.shape[1] < FEWEST_SEEN:
         return None
     rows, columns = sorted(corners.shape[:2])
-    return f"This looks like a chessboard, of {columns}×{rows} inner corners."
+    if chessboard_corners(small, (columns, rows)) is None:
+        return None
+    return f"Squares as of a chessboard with {columns}×{rows} inner corners are seen, and nothing else."
 
 
 def _neighbours(board: Board) -> Iterator[tuple[int, int]]:
@@ -196,7 +230,7 @@ def why_markers(picture: Picture, board: Board, corners: int, markers: int) -> N
     return NotFound(
         name,
         f"Only {corners} corners and {markers} markers are seen; 6 corners are the least. "
-        "Show more of the board.",
+        "Show more of the board, larger and sharper.",
     )
 
 
