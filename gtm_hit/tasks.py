@@ -20,10 +20,13 @@ from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.layers import job as annotation_job
 from gtm_hit.ops.layers import unfinished
 from gtm_hit.ops.outbox import sending
+from gtm_hit.ops.proposals import foregrounds
 from gtm_hit.ops.proposals import job as proposal_job
 from gtm_hit.ops.releases import releasing
 from gtm_hit.ops.scores import computing
 from gtm_hit.ops.stitching import running as stitching
+from gtm_hit.ops.sync import job as sync_job
+from gtm_hit.ops.sync import pictures as video_pictures
 from gtm_hit.ops.work import assignments
 
 OPERATIONS: dict[str, queue.Operation] = {
@@ -36,6 +39,7 @@ OPERATIONS: dict[str, queue.Operation] = {
     Job.Kind.REPLACE_CALIBRATION: calibration_job.run,
     Job.Kind.SOLVE_LENS: lens_job.run,
     Job.Kind.STITCH: stitching.run,
+    Job.Kind.SYNC_VIDEOS: sync_job.run,
     Job.Kind.SEND_OUTBOX: partial(sending.run, connect=connect),
 }
 
@@ -61,6 +65,8 @@ def expire_exports() -> None:
 @shared_task
 def remove_unused_pictures() -> None:
     picture_cleanup.remove_unused_pictures(timezone.now())
+    video_pictures.remove_old(timezone.now())
+    foregrounds.sweep()
 
 
 @shared_task

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import HealthCheck
 from hypothesis import settings as hypothesis_settings
 
+from tests.demo_frames import LookedAt, look
 from tests.prolific_server import Prolific, prolific_server
 
 REPOSITORY = Path(__file__).resolve().parent.parent
@@ -24,6 +25,12 @@ def shared_data() -> Path:
     if not folder.is_dir():
         pytest.skip("reference data not present: ../shared/data")
     return folder
+
+
+@pytest.fixture(scope="session")
+def demo_frames(tmp_path_factory: pytest.TempPathFactory) -> LookedAt:
+    """The demo scene's first ten frames and whom the built-in detector finds in them."""
+    return look(tmp_path_factory.mktemp("demo"))
 
 
 @pytest.fixture

@@ -24,6 +24,7 @@ from gtm_hit.models.review import Appeal, Category, Comment, Mend, ReviewChoice,
 from gtm_hit.models.role import Membership, Role, RoleChange
 from gtm_hit.models.score import AssignmentScore, WorkerScore
 from gtm_hit.models.stitching import StitchConflict, StitchedFrame, Stitching, StitchingRun
+from gtm_hit.models.sync import VideoSync, VideoSyncState
 from gtm_hit.models.work import Assignment, Batch, Worker
 
 __all__ = [
@@ -85,6 +86,8 @@ __all__ = [
     "StitchingRun",
     "Submission",
     "Transition",
+    "VideoSync",
+    "VideoSyncState",
     "WorkClock",
     "Worker",
     "WorkerScore",

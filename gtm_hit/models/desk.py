@@ -145,9 +145,7 @@ class DeskEdit(models.Model):
 
     desk = models.ForeignKey(Desk, on_delete=models.CASCADE, related_name="edits")
     number = models.PositiveIntegerField(help_text="from 1")
-    follows = models.PositiveIntegerField(
-        help_text="number of the page's step before it; 0: none"
-    )
+    follows = models.PositiveIntegerField(help_text="number of the page's step before it; 0: none")
     page = models.CharField(max_length=100, help_text="where it was done: undo goes page by page")
     what = models.CharField(max_length=200, help_text="in words")
     changes = models.JSONField()

@@ -20,6 +20,7 @@ from gtm_hit.ops.errors import OperationError
 from gtm_hit.ops.outbox import planning
 from gtm_hit.ops.pay import csv_files, ledger, table
 from gtm_hit.pages.common.access import StaffRequest, needs
+from gtm_hit.pages.common.attachments import csv_attachment
 from gtm_hit.pages.common.campaign_choice import campaign_or_404
 
 WORKERS_PER_PAGE = 100
@@ -136,12 +137,7 @@ def payout(request: StaffRequest, slug: str, name: str) -> HttpResponse:
 def as_csv(request: HttpRequest, slug: str, name: str, what: str) -> HttpResponse:
     campaign = campaign_or_404(slug, name)
     text = csv_files.workers(campaign) if what == "workers" else csv_files.ledger_lines(campaign)
-    return attachment(text, f"{slug}-{name}-{what}.csv")
-
-
-def attachment(text: str, name: str) -> HttpResponse:
-    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
-    return HttpResponse(text, content_type="text/csv; charset=utf-8", headers=headers)
+    return csv_attachment(text, f"{slug}-{name}-{what}.csv")
 
 
 def frame(campaign: Campaign) -> dict[str, object]:

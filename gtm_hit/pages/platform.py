@@ -33,8 +33,9 @@ from gtm_hit.ops.outbox import (
 )
 from gtm_hit.ops.outbox.platform import StudyDraft
 from gtm_hit.pages.common.access import StaffRequest, needs
+from gtm_hit.pages.common.attachments import csv_attachment
 from gtm_hit.pages.common.campaign_choice import campaign_or_404
-from gtm_hit.pages.pay import attachment, frame, told
+from gtm_hit.pages.pay import frame, told
 
 ROWS_PER_PAGE = 50
 SECRET = forms.PasswordInput(attrs={"autocomplete": "off"})
@@ -226,7 +227,7 @@ def file(request: HttpRequest, slug: str, name: str, what: str) -> HttpResponse:
         made = handover.made(campaign, what, int(upto) if upto.isdecimal() else None)
     except handover.HandoverError as error:
         raise Http404(str(error)) from None
-    return attachment(made.text, f"{slug}-{name}-{what}.csv")
+    return csv_attachment(made.text, f"{slug}-{name}-{what}.csv")
 
 
 @press

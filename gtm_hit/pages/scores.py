@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Iterable
 from typing import Any
 
 from django.contrib import messages
@@ -17,12 +14,13 @@ from django.views.decorators.http import require_POST, require_safe
 
 from gtm_hit.models import Assignment, WorkerScore
 from gtm_hit.ops.access.roles import Role
+from gtm_hit.ops.files.csv_text import csv_text
 from gtm_hit.ops.scores import listing, words
 from gtm_hit.ops.scores.suspicion import by_suspicion
 from gtm_hit.pages.common.access import needs
+from gtm_hit.pages.common.attachments import csv_attachment
 from gtm_hit.pages.common.campaign_choice import campaign_or_404
 from gtm_hit.pages.gold import frame_of
-from gtm_hit.pages.quality.statistics import attachment
 
 ROWS_PER_PAGE = 100
 
@@ -43,7 +41,7 @@ def campaign_scores_csv(request: HttpRequest, slug: str, name: str) -> HttpRespo
     campaign = campaign_or_404(slug, name)
     header = ["worker", "score", "low", "high", "assignments", "why"]
     lines = (score_line(row) for row in listing.workers(campaign))
-    return csv_file(header, lines, f"{slug}-{name}-scores.csv")
+    return csv_attachment(csv_text(header, lines), f"{slug}-{name}-scores.csv")
 
 
 def score_line(row: WorkerScore) -> list[Any]:
@@ -78,7 +76,7 @@ def campaign_suspicion_csv(request: HttpRequest, slug: str, name: str) -> HttpRe
     campaign = campaign_or_404(slug, name)
     header = ["batch", "copy", "worker", "state", "submitted", "layer", "suspicion", "why"]
     lines = (suspicion_line(one) for one in by_suspicion(campaign))
-    return csv_file(header, lines, f"{slug}-{name}-suspicion.csv")
+    return csv_attachment(csv_text(header, lines), f"{slug}-{name}-suspicion.csv")
 
 
 def suspicion_line(one: Assignment) -> list[Any]:
@@ -92,14 +90,6 @@ def doubts(one: Assignment) -> tuple[int | None, list[str]]:
     """Percent and reasons; none for work nobody measured yet."""
     score = getattr(one, "score", None)
     return (None, []) if score is None else (round(100 * score.suspicion), words.of_suspicion(score))
-
-
-def csv_file(header: list[str], lines: Iterable[list[Any]], name: str) -> HttpResponse:
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(lines)
-    return attachment(stream.getvalue(), "text/csv; charset=utf-8", name)
 
 
 CAMPAIGN = "datasets/<slug:slug>/campaigns/<str:name>/"

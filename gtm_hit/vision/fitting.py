@@ -42,13 +42,16 @@ def fit(
     start : (N, 3) x, y, height
     usual : (N,) the height each is expected to have
     boxes : per camera (N, 4), NaN where a body has none
-    middles : per camera (N,), where the background shows a body's middle; NaN where it does not
+    middles : per camera (N, 2), where the background shows a body's middle, NaN where it does not, and how
+        far that may be off, as a share of the body's height
     """
     bodies = start.copy()
     said = {name: _edges_said(found, cameras[name], settings) for name, found in boxes.items()}
     for name, middle in (middles or {}).items():
         said.setdefault(name, _nothing_said(len(start), settings))
-        said[name][0][:, 3] = middle
+        edges, spread = said[name]
+        edges[:, 3] = middle[:, 0]
+        spread[:, 3] = np.hypot(settings.seen, np.nan_to_num(middle[:, 1]))
     for _ in range(STEPS):
         normal, slope = _prior(bodies, usual, settings)
         for name, (edges, spread) in said.items():

@@ -14,7 +14,7 @@ from gtm_hit.vision.bodies import body_boxes
 from gtm_hit.vision.boxes import Box
 from gtm_hit.vision.cover import Body, CoverSettings
 from gtm_hit.vision.fitting import chosen_boxes, fit
-from gtm_hit.vision.silhouettes import SilhouetteSettings, middles
+from gtm_hit.vision.silhouettes import SilhouetteSettings, silhouettes
 
 ROUNDS = 2  # the foreground is looked at again from the better place
 FURTHEST = 0.25  # metres the background may move somebody
@@ -26,7 +26,7 @@ def placed(
     foregrounds: Mapping[str, NDArray],
     cameras: Mapping[str, Camera],
     settings: CoverSettings,
-    silhouettes: SilhouetteSettings,
+    look: SilhouetteSettings,
 ) -> list[Body]:
     """The bodies, each moved by not more than `FURTHEST`; with all the others explained."""
     if not bodies:
@@ -37,8 +37,7 @@ def placed(
     now, spread = start, np.array([body.spread for body in bodies])
     for _ in range(ROUNDS):
         seen = {
-            name: _middles(now, cameras[name], mask, silhouettes, settings)
-            for name, mask in foregrounds.items()
+            name: _middles(now, cameras[name], mask, look, settings) for name, mask in foregrounds.items()
         }
         now, spread = fit(now, usual, found, cameras, settings.fit, seen)
         now = _held(start, now)
@@ -49,11 +48,12 @@ def placed(
 
 
 def _middles(
-    bodies: Floats, camera: Camera, mask: NDArray, silhouettes: SilhouetteSettings, settings: CoverSettings
+    bodies: Floats, camera: Camera, mask: NDArray, look: SilhouetteSettings, settings: CoverSettings
 ) -> Floats:
+    """Where the foreground shows the middle of each body, and how far that may be off, (N, 2)."""
     expected = body_boxes(camera, bodies[:, :2], settings.sight.radius, bodies[:, 2])
-    scale = mask.shape[1] / camera.width
-    return middles(mask, scale, expected.whole, expected.share, silhouettes)[0]
+    found = silhouettes(mask, mask.shape[1] / camera.width, expected.whole, expected.share, look)
+    return np.column_stack((found.middle, found.spread))
 
 
 def _usual(heights: Floats, settings: CoverSettings) -> Floats:

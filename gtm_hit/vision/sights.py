@@ -51,20 +51,21 @@ class Sight:
         tall = expected.whole[:, 3] - expected.whole[:, 1]
         reach = self.settings.aside * np.sqrt(self.settings.most) * tall
         weight = np.sqrt(expected.share)
-        for number in np.flatnonzero(self.value):
-            box = self.found[number]
-            near = np.abs(middle - (box[0] + box[2]) / 2) < reach  # NaN is near nothing
-            rows = np.flatnonzero(near & (expected.share > 0))
-            agree = self._agreement(expected.boxes[rows], tall[rows], box)
-            worth[rows, number] = agree * self.value[number] * weight[rows]
+        counted = np.flatnonzero(self.value)
+        middles = (self.found[counted, 0] + self.found[counted, 2]) / 2
+        near = np.abs(middle[:, None] - middles) < reach[:, None]  # NaN is near nothing
+        rows, columns = np.nonzero(near & (expected.share > 0)[:, None])
+        boxes = counted[columns]
+        agree = self._agreement(expected.boxes[rows], tall[rows], self.found[boxes])
+        worth[rows, boxes] = agree * self.value[boxes] * weight[rows]
         return worth
 
-    def _agreement(self, expected: Floats, tall: Floats, box: Floats) -> Floats:
-        """How well a box (4+) fits the boxes expected (N, 4), 0…1."""
+    def _agreement(self, expected: Floats, tall: Floats, found: Floats) -> Floats:
+        """How well boxes found (N, 4+) fit those expected (N, 4), 0…1."""
         s = self.settings
-        aside = (box[0] + box[2] - expected[:, 0] - expected[:, 2]) / 2 / tall / s.aside
-        bottom = (box[3] - expected[:, 3]) / tall / s.bottom
-        top = (box[1] - expected[:, 1]) / tall / s.top
+        aside = (found[:, 0] + found[:, 2] - expected[:, 0] - expected[:, 2]) / 2 / tall / s.aside
+        bottom = (found[:, 3] - expected[:, 3]) / tall / s.bottom
+        top = (found[:, 1] - expected[:, 1]) / tall / s.top
         off = aside**2 + np.minimum(bottom**2, s.cap) + np.minimum(top**2, s.cap)
         agree: Floats = np.clip(1 - off / s.most, 0, 1)
         return agree

@@ -1,88 +1,83 @@
-"""Where the upper part of a body is in the foreground of a view: sharper than any detector's box.
+"""Where a body is in the foreground of a view: the template laid over it, everybody else explained.
 
-Feet are left out, for shadows start there. Who overlaps with somebody else in a view is not measured in it.
+A view's answer is how far beside the expected place the template fits best, and how sure that is. It is one
+only where the body explains foreground that nobody else does; feet are left out, for shadows start there.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gtm_hit.geometry.camera import Floats
+from gtm_hit.vision.templates import PITCH, ROWS, Template, drawn, painted, sampled
 
 Mask = NDArray[np.float32]
+
+SHIFTS = 8  # columns to either side that a template is moved
 
 
 @dataclass(frozen=True)
 class SilhouetteSettings:
-    top: float = 0.0  # of the body's height, from the head
-    bottom: float = 0.75
-    reach: float = 0.20  # to either side, as a share of the height
-    core: float = 0.07  # to either side: this must be foreground
-    filled: float = 0.45  # share of the core that must be
-    crowded: float = 0.30  # share of the window that others may cover
+    template: Template = field(default_factory=drawn)
+    bottom: float = 0.8  # share of the height, from the head, that is looked at
+    least: float = 0.06  # gain for each cell of the template from which a view has a say
+    sharp: float = 6.0  # gain by which a shift is e times as likely: neighbouring cells say the same
     smallest: float = 12.0  # pixels of the reduced picture a body must be tall
-    rounds: int = 3
+    share: float = 0.9  # of the body that must be in the picture
 
 
-def middles(
-    foreground: Mask, scale: float, whole: Floats, share: Floats, settings: SilhouetteSettings
-) -> tuple[Floats, Floats]:
-    """Middle of each body (N,), pixels of the calibrated picture, NaN where it cannot be told; and how much
-    of the body's upper half is foreground (N,), NaN where nothing is known.
+@dataclass(frozen=True, eq=False)
+class Silhouettes:
+    """What a view's foreground says about bodies."""
 
-    whole : (N, 4) the boxes expected, pixels of the calibrated picture
+    middle: Floats  # (N,) pixels of the calibrated picture; NaN where it cannot be told
+    spread: Floats  # (N,) of the middle, as a share of the body's height
+    gain: Floats  # (N,) by which a cell of the template is likelier with the body than without; NaN: unknown
+
+
+def silhouettes(
+    foreground: Mask, scale: float, whole: Floats, share: Floats, s: SilhouetteSettings
+) -> Silhouettes:
+    """whole : (N, 4) the boxes expected, pixels of the calibrated picture, everybody's
+    share : (N,) of each in the picture
     """
-    surely = np.clip(2 * foreground.astype(np.float32) - 1, 0, 1)
     boxes = whole * scale
-    middle, seen = np.full(len(boxes), np.nan), np.full(len(boxes), np.nan)
-    for body in np.flatnonzero((share > 0.9) & (boxes[:, 3] - boxes[:, 1] >= settings.smallest)):
-        middle[body], seen[body] = _middle(surely, boxes, int(body), settings)
-    return middle / scale, seen
+    middle, spread, gain = (np.full(len(boxes), np.nan) for _ in range(3))
+    rows = np.flatnonzero((share >= s.share) & (boxes[:, 3] - boxes[:, 1] >= s.smallest))
+    if len(rows):
+        gains = _gains(foreground, boxes, rows, s)
+        shifts = PITCH * (np.arange(2 * SHIFTS + 1) - SHIFTS)
+        weight = np.exp((gains - gains.max(axis=1, keepdims=True)) / s.sharp)
+        weight /= weight.sum(axis=1, keepdims=True)
+        off = weight @ shifts
+        spread[rows] = np.sqrt(np.maximum(weight @ shifts**2 - off**2, 0.0))
+        gain[rows] = gains.max(axis=1) / (_looked_at(s) * s.template.body.shape[1])
+        told = gain[rows] >= s.least
+        tall, centre = whole[rows, 3] - whole[rows, 1], (whole[rows, 0] + whole[rows, 2]) / 2
+        middle[rows] = np.where(told, centre + off * tall, np.nan)
+    return Silhouettes(middle, spread, gain)
 
 
-def _middle(surely: Mask, boxes: Floats, body: int, s: SilhouetteSettings) -> tuple[float, float]:
-    x1, y1, x2, y2 = boxes[body]
-    tall, centre = y2 - y1, (x1 + x2) / 2
-    top, bottom = (max(0, round(y1 + share * tall)) for share in (s.top, s.bottom))
-    seen = _filled(surely[top:bottom], centre, s.core * tall)
-    others = _crowd(boxes, body, top, bottom)
-    if not seen >= s.filled:
-        return np.nan, seen
-    for _ in range(s.rounds):
-        left, right = centre - s.reach * tall, centre + s.reach * tall
-        if left < 0 or right > surely.shape[1] or _covered(others, left, right) > s.crowded:
-            return np.nan, seen
-        columns = np.arange(int(left), int(right) + 1)
-        columns = columns[columns < surely.shape[1]]
-        # Columns at the window's ends count by the part of them inside: else the centre sticks to pixels.
-        inside = np.clip(np.minimum(columns + 1 - left, right - columns), 0, 1)
-        weight = surely[top:bottom, columns].sum(axis=0) * inside * ~_taken(others, columns)
-        if weight.sum() <= 0:
-            return np.nan, seen
-        centre = float((weight * (columns + 0.5)).sum() / weight.sum())
-    return centre - 0.5, seen
+def _looked_at(s: SilhouetteSettings) -> int:
+    return round(s.bottom * ROWS)
 
 
-def _filled(rows: Mask, centre: float, reach: float) -> float:
-    part = rows[:, max(0, round(centre - reach)) : max(0, round(centre + reach)) + 1]
-    return float(part.mean()) if part.size else float("nan")
-
-
-def _crowd(boxes: Floats, body: int, top: float, bottom: float) -> Floats:
-    """Left and right of everybody else between two rows, (M, 2)."""
-    there = (boxes[:, 1] < bottom) & (boxes[:, 3] > top) & np.isfinite(boxes[:, 0])
-    there[body] = False
-    return boxes[there][:, [0, 2]]
-
-
-def _covered(others: Floats, left: float, right: float) -> float:
-    common = np.minimum(others[:, 1], right) - np.maximum(others[:, 0], left)
-    return float(np.maximum(common, 0).sum() / (right - left))
-
-
-def _taken(others: Floats, columns: NDArray[np.int64]) -> NDArray[np.bool_]:
-    taken = (columns[:, None] >= others[None, :, 0] - 1) & (columns[:, None] <= others[None, :, 1])
-    return np.asarray(taken.any(axis=1))
+def _gains(foreground: Mask, boxes: Floats, rows: NDArray[np.int64], s: SilhouetteSettings) -> Floats:
+    """How much likelier the foreground is with each body, moved aside by each shift, than without it."""
+    looked, body, nobody = _looked_at(s), s.template.body, s.template.nobody
+    free = sampled(painted(s.template, boxes, foreground.shape), boxes[rows], SHIFTS)
+    free[:, :, SHIFTS:-SHIFTS] -= np.log1p(-body)  # of all others
+    others = 1 - (1 - nobody) * np.exp(np.minimum(free, 0.0))[:, :looked]
+    seen = 2 * sampled(foreground, boxes[rows], SHIFTS)[:, :looked] - 1
+    there, away = np.maximum(seen, 0), np.maximum(-seen, 0)
+    body = body[:looked]
+    gains = []
+    for start in range(2 * SHIFTS + 1):
+        at = np.s_[:, :, start : start + body.shape[1]]
+        more = np.log(1 - (1 - body) * (1 - others[at])) - np.log(others[at])
+        gains.append((there[at] * more + away[at] * np.log1p(-body)).sum(axis=(1, 2)))
+    result: Floats = np.stack(gains, axis=1)
+    return result

@@ -1,8 +1,9 @@
 """Where somebody really stands whose place was marked roughly.
 
-Places around the mark are scored by the detector's boxes, as far as the others who are marked do not explain
-them. The scores' peak, to less than a step, is where the edges of the boxes, and the background where it is
-trusted, then say to the centimetre where. Nobody is moved for a small gain, far, or onto somebody else.
+Places around the mark are scored by the detector's boxes and by what is not the background, as far as the
+others who are marked do not explain them. The scores' peak, to less than a step, is where the person stands;
+where the background says nothing, the edges of the boxes say to the centimetre where. Nobody is moved for a
+small gain, far, or onto somebody else.
 """
 
 from __future__ import annotations
@@ -12,11 +13,12 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gtm_hit.geometry.camera import Camera, Floats
 from gtm_hit.vision.boxes import Box, as_array
 from gtm_hit.vision.cover import Body, CoverSettings, Match, matches_of
+from gtm_hit.vision.masks import Masks
+from gtm_hit.vision.outlines import agreement
 from gtm_hit.vision.placing import placed
 from gtm_hit.vision.sights import Sight
 from gtm_hit.vision.silhouettes import SilhouetteSettings
@@ -35,6 +37,7 @@ class SnapSettings:
     reach: float = 0.5  # metres: nobody is moved further
     step: float = 0.05  # metres between places that are scored
     sharp: float = 0.05  # of the scores: by how much better a place is e times as likely
+    shown: float = 0.01  # what the logarithm of the foreground's likelihood counts for the scores
     least: float = 0.3  # a place must be worth this much
     gain: float = 0.05  # and so much more than the one marked
     apart: float = 0.35  # metres from everybody else
@@ -62,7 +65,7 @@ def snap(
     marks: Marks,
     boxes: Mapping[str, Sequence[Box]],
     cameras: Mapping[str, Camera],
-    foregrounds: Mapping[str, NDArray] | None = None,
+    foregrounds: Masks | None = None,
     settings: SnapSettings | None = None,
 ) -> Snapped:
     """The better place, or the same one with the reason why it stays."""
@@ -74,13 +77,16 @@ def snap(
     places = _disc(marks.one, s)
     free = _apart(places, marks.others) >= s.apart
     scores = _Scores(sights, marks.others, taken)
-    worth = scores.of(places)
-    here = float(scores.of(marks.one[None])[0])
-    if not free.any() or worth.max(initial=-np.inf) < s.least:
+    tried = np.vstack((places, marks.one))
+    shown = s.shown * _shown(foregrounds or {}, cameras, tried, marks.others)
+    worth = scores.of(tried) + shown
+    if not free.any() or worth[:-1].max() < s.least:
         return _stays(marks, 0.0, Refused.NEAR if not free.any() else Refused.NOTHING)
-    peak = _peak(places[free], worth[free], s)
-    found = _placed(marks, peak, taken, scores, foregrounds or {}, cameras, s)
-    gain = float(scores.of(found[None])[0]) - here
+    found = _peak(places[free], worth[:-1][free], s)
+    gain = float(worth[:-1][free].max() - worth[-1])
+    if not shown.any():
+        found = _placed(marks, found, taken, scores, cameras, s)
+        gain = float(scores.of(found[None])[0] - worth[-1])
     if _apart(found[None], marks.others)[0] < s.apart:
         return _stays(marks, gain, Refused.NEAR)
     if gain < s.gain:
@@ -114,6 +120,12 @@ def _peak(places: Floats, worth: Floats, s: SnapSettings) -> Floats:
     weight[np.hypot(*(places[:, :2] - best[:2]).T) > s.reach / 2] = 0.0
     middle: Floats = (places * weight[:, None]).sum(axis=0) / weight.sum()
     return middle
+
+
+def _shown(foregrounds: Masks, cameras: Mapping[str, Camera], bodies: Floats, others: Floats) -> Floats:
+    """What is not the background says about bodies (N, 3), all views together, (N,)."""
+    seen = (agreement(mask, cameras[name], bodies, others) for name, mask in foregrounds.items())
+    return sum(seen, np.zeros(len(bodies)))
 
 
 class _Scores:
@@ -154,11 +166,10 @@ def _placed(
     peak: Floats,
     taken: Sequence[Match],
     scores: _Scores,
-    foregrounds: Mapping[str, NDArray],
     cameras: Mapping[str, Camera],
     s: SnapSettings,
 ) -> Floats:
-    """The body at the peak put where its boxes' edges and the background say, the others held to be known."""
+    """The body at the peak put where its boxes' edges say."""
     mine = {name: box for name in scores.sights if (box := scores.box(name, peak)) is not None}
     bodies = [Body(peak[:2], float(peak[2]), 0.0, mine, np.eye(2))]
     bodies += [
@@ -166,7 +177,7 @@ def _placed(
         for each, match in zip(marks.others, taken, strict=True)
     ]
     boxes = {name: [Box(*row) for row in sight.found.tolist()] for name, sight in scores.sights.items()}
-    found = placed(bodies, boxes, foregrounds, cameras, s.cover, s.silhouettes)[0].xy
+    found = placed(bodies, boxes, {}, cameras, s.cover, s.silhouettes)[0].xy
     away = found - marks.one[:2]
     held = away * min(1.0, s.reach / max(float(np.hypot(*away)), 1e-9))
     return np.array([*(marks.one[:2] + held), marks.one[2]])

@@ -78,7 +78,7 @@
  * @typedef {{number: number, people: Proposed[], refused: number[]}} ProposedFrame
  * @typedef {{run: number|null, threshold: number, frames: ProposedFrame[]}} ProposalsAnswer
  * @typedef {{position: number, metres: number, gain: number,
- *            refused: ""|"unseen"|"nothing"|"small"|"near"}} SnapAnswer
+ *            refused: ""|"unseen"|"nothing"|"small"|"near", background: boolean}} SnapAnswer
  *
  * @typedef {{batch: string, frames: {number: number, people: number}[], annotations: number, minutes: number,
  *            submitted_at: string|null}} Summary

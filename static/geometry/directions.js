@@ -39,7 +39,7 @@ const LAYOUTS = [
  * @returns {ScreenStep[]|null} one unit vector (x, y) in pixels for
  *   each of +column, -column, +row, -row; null where the point is not in front of the camera
  */
-function screenStep(camera, x, y) {
+export function screenStep(camera, x, y) {
   const alongColumns = direction(camera, x, y, REACH, 0);
   const alongRows = direction(camera, x, y, 0, REACH);
   if (!alongColumns || !alongRows) return null;

@@ -49,7 +49,7 @@ export function rectangleIn(boxes, position) {
  * @param {Float64Array} out @param {Camera} camera @param {Grid} grid @param {Cylinder} cylinder
  * @param {FootRule} rule @param {number} position
  */
-function rectangleInto(out, camera, grid, cylinder, rule, position) {
+export function rectangleInto(out, camera, grid, cylinder, rule, position) {
   if (rule === "corners") return cornersRule(out, camera, grid, cylinder, position);
   if (rule === "centre") return centreRule(out, camera, grid, cylinder, position);
   throw new TypeError(`foot rule must be "corners" or "centre", not ${rule}`);

@@ -46,7 +46,7 @@ export function arrange(count, room, aspect, panelShown = true) {
  * @param {number} count at least two @param {Size} room @param {number} aspect
  * @returns {Around}
  */
-function arrangeAround(count, room, aspect) {
+export function arrangeAround(count, room, aspect) {
   const others = count - 1;
   const width = room.width - PANEL - GAP;
   /** @type {(Around & {worth: number})|null} */

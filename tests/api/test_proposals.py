@@ -62,7 +62,7 @@ def test_a_refusal_that_cannot_be_changes_nothing(annotator: Caller, body: Any, 
 def test_a_mark_is_put_right_only_where_a_detector_has_looked(annotator: Caller) -> None:
     body = {"frame": 0, "position": 77, "others": [{"position": 90, "height": 1.5}]}
     told = annotator.post("/api/v1/assignment/snap/", body).json()
-    assert told == {"position": 77, "metres": 0.0, "gain": 0.0, "refused": "unseen"}
+    assert told == {"position": 77, "metres": 0.0, "gain": 0.0, "refused": "unseen", "background": False}
     assert Annotation.objects.count() == 0
 
 

@@ -19,7 +19,7 @@ function page(store, answer) {
 }
 
 const two = () => frames([one(7, [10, 10]), one(8, [30, 10])]);
-const moved = { position: at([12, 10]), metres: 0.05, gain: 1, refused: "" };
+const moved = { position: at([12, 10]), metres: 0.05, gain: 1, refused: "", background: true };
 const place = ({ store }, person) => store.person(person, store.current).position;
 
 test("a click moves to what the server says, with everybody else told, and one undo brings the click back", async () => {
@@ -37,7 +37,7 @@ test("a click moves to what the server says, with everybody else told, and one u
 });
 
 test("whoever asks by key is told why somebody stays; whoever clicks is not", async () => {
-  const here = page(two(), { position: at([10, 10]), metres: 0, gain: 0, refused: "near" });
+  const here = page(two(), { position: at([10, 10]), metres: 0, gain: 0, refused: "near", background: true });
   here.store.select(7);
   await here.snapping.settle(7);
   assert.deepEqual(here.said, []);

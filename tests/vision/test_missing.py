@@ -101,6 +101,26 @@ def test_a_box_left_standing_while_the_person_walked_on_is_listed() -> None:
     assert [(one.why, one.frame) for one in found] == [(Why.STILL, 3)]
 
 
+def test_somebody_seen_beside_their_place_once_has_not_walked_on() -> None:
+    frames = np.arange(5)
+    stands = np.zeros((5, 2))
+    seen = stands.copy()
+    seen[3, 0] = 0.6
+    walk = Seen(frames, seen, np.full(5, 0.45), np.full(5, 1))
+    assert cases(Marked(frames, stands, np.full(5, 1)), walk) == []
+
+
+def test_somebody_proposed_a_step_beside_a_person_whom_nothing_else_shows_is_that_person() -> None:
+    one = Marked(np.array([0]), np.array([[0.0, 0.0]]), np.array([1]))
+    beside = Seen(np.array([0]), np.array([[0.7, 0.0]]), np.array([0.9]), np.array([-1]))
+    assert cases(one, beside) == []
+    both = Seen(
+        np.zeros(2, np.int64), np.array([[0.7, 0.0], [0.1, 0.0]]), np.full(2, 0.9), np.array([-1, -1])
+    )
+    (case,) = cases(one, both)
+    assert (case.why, case.x) == (Why.PROPOSED, 0.7)
+
+
 def test_a_single_sighting_needs_a_high_score() -> None:
     whole = crowd(people=1)
     for score, count in ((0.6, 0), (0.9, 1)):

@@ -24,7 +24,7 @@ from gtm_hit.api.jobs import JobShape, started
 from gtm_hit.models import ApiToken
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.datasets import job
-from gtm_hit.ops.datasets.videos.options import VideoSource
+from gtm_hit.ops.datasets.videos.options import MOST_DRIFT, VideoSource
 from gtm_hit.ops.files import sources
 
 
@@ -33,6 +33,12 @@ class VideoSerializer(serializers.Serializer[Any]):
     file = serializers.CharField(max_length=300, help_text="seen from the source's folder")
     offset = FiniteField(
         default=0.0, help_text="seconds in this video at which the time all videos share is 0"
+    )
+    drift = FiniteField(
+        default=0.0,
+        min_value=-MOST_DRIFT,
+        max_value=MOST_DRIFT,
+        help_text="parts per million by which its clock is fast",
     )
 
 
@@ -79,7 +85,9 @@ class VideoImports(StaffView):
         options["values"] = job.video_values(options["slug"], options["preset"], options["values"])
         options["undistort"] = not options.pop("as_taken")
         refuse_impossible(options)
-        found = [VideoSource(each["camera"], Path(each["file"]), each["offset"]) for each in videos]
+        found = [
+            VideoSource(each["camera"], Path(each["file"]), each["offset"], each["drift"]) for each in videos
+        ]
         return started(job.start_videos(source, options, found, start, until, caller(request)))
 
 

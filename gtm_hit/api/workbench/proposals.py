@@ -84,8 +84,11 @@ class SnappedSerializer(serializers.Serializer[Any]):
     gain = serializers.FloatField(help_text="of what the views say; a box that fits is worth up to 1")
     refused = serializers.ChoiceField(
         choices=["", "unseen", "nothing", "small", "near"],
-        help_text="why the mark stays: no detector has looked, no view shows anybody, it is about as good "
+        help_text="why the mark stays: no program has looked, no view shows anybody, it is about as good "
         "where it is, somebody else stands there",
+    )
+    background = serializers.BooleanField(
+        help_text="by the foreground that the run has kept, too; else by the boxes alone"
     )
 
 
@@ -133,7 +136,7 @@ class RefusalsView(PlacedView):
 class SnapView(PlacedView):
     @extend_schema(
         summary="Where somebody marked roughly seems to stand; changes nothing",
-        description="By the boxes of the run that is shown; at most half a metre away.",
+        description="By the boxes and the foreground that the run shown has kept; at most half a metre away.",
         request=SnapSerializer,
         responses={
             200: SnappedSerializer,

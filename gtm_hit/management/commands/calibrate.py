@@ -5,13 +5,15 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
-from gtm_hit.management.calibrating import ground, lens, undistort
+from gtm_hit.management.calibrating import adjust, ground, lens, sync, undistort
 from gtm_hit.management.calibrating.step import Step
 
 STEPS: dict[str, Step] = {
     "lens": lens,
     "ground": ground,
+    "adjust": adjust,
     "undistort": undistort,
+    "sync": sync,
 }
 
 

@@ -15,7 +15,7 @@ from gtm_hit.ops.proposals import snapping
 
 class Command(BaseCommand):
     help = (
-        "Put everybody of a layer where the boxes of the run in use and the background show them, "
+        "Put everybody of a layer where the boxes and the foreground that the run in use has kept show them, "
         "by half a metre at most. Every frame that changes is a save, which its history can take back."
     )
 
@@ -36,4 +36,11 @@ class Command(BaseCommand):
         if options["json"]:
             return self.stdout.write(json.dumps(asdict(done)))
         moved = f"{done.moved} of {done.people} people moved, by {100 * done.metres:.1f} cm on average"
-        return self.stdout.write(f"{moved}, in {done.frames} frames")
+        self.stdout.write(f"{moved}, in {done.frames} frames")
+        if done.unseen:
+            self.stdout.write(f"{done.unseen} of them the run in use has not looked at: nobody moves there")
+        if done.boxes_alone:
+            self.stdout.write(
+                f"{done.boxes_alone} of them went by boxes alone, for the run has kept no foreground: "
+                "a new run keeps it"
+            )

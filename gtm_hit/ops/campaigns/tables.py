@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Iterable, Sequence
 from typing import Any
 
 from gtm_hit.models import Campaign, Worker
 from gtm_hit.ops.campaigns import overview
-
-# A spreadsheet takes a cell that begins like this for a formula.
-FORMULA = ("=", "+", "-", "@", "\t", "\r")
+from gtm_hit.ops.files.csv_text import csv_text
 
 
 def workers_csv(campaign: Campaign) -> str:
@@ -30,7 +25,7 @@ def workers_csv(campaign: Campaign) -> str:
         ]
         for row in overview.worker_rows(campaign, overview.workers(campaign))
     ]
-    return table(
+    return csv_text(
         [*head, "frames_done", "active_minutes", "last_batch_taken_utc", "score", "score_low", "score_high"],
         rows,
     )
@@ -54,21 +49,8 @@ def assignments_csv(campaign: Campaign, worker: Worker | None = None) -> str:
         ]
         for row in overview.with_sums(overview.assignments(campaign, worker))
     ]
-    return table([*head, "taken_utc", "submitted_utc", "submission", "layer"], rows)
+    return csv_text([*head, "taken_utc", "submitted_utc", "submission", "layer"], rows)
 
 
 def moment(at: Any) -> str:
     return at.strftime("%Y-%m-%dT%H:%M:%SZ") if at else ""
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    written = io.StringIO()
-    writer = csv.writer(written, lineterminator="\n")
-    writer.writerow(head)
-    for row in rows:
-        writer.writerow([harmless(cell) for cell in row])
-    return written.getvalue()
-
-
-def harmless(cell: Any) -> Any:
-    return f"'{cell}" if isinstance(cell, str) and cell.startswith(FORMULA) else cell

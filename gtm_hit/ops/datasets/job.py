@@ -50,7 +50,7 @@ def start_videos(
     parameters = {
         "source": source.key,
         "options": options,
-        "videos": [[each.camera, str(each.path), each.offset] for each in videos],
+        "videos": [[each.camera, str(each.path), each.offset, each.drift] for each in videos],
         "start": start,
         "until": until,
     }
@@ -121,11 +121,11 @@ def video_options(source: sources.Source, parameters: dict[str, Any]) -> VideoOp
     """Raises JobError for a video outside the source's folder, whatever a job's row says."""
     root = source.path.resolve()
     videos = []
-    for camera, name, offset in parameters["videos"]:
+    for camera, name, offset, *drift in parameters["videos"]:  # jobs from before know none
         path = (root / name).resolve()
         if not path.is_relative_to(root):
             raise queue.JobError(f"{name} does not lie in {source.key}.")
-        videos.append(VideoSource(camera, path, offset))
+        videos.append(VideoSource(camera, path, offset, *drift))
     until = parameters["until"]
     dataset = ImportOptions(folder=source.path, **parameters["options"])
     return VideoOptions(dataset, tuple(videos), parameters["start"], math.inf if until is None else until)

@@ -18,8 +18,8 @@ from django.utils.translation import gettext as _
 
 from gtm_hit.models import Campaign, OutboxRow
 from gtm_hit.ops.errors import OperationError
+from gtm_hit.ops.files.csv_text import harmless
 from gtm_hit.ops.outbox import rows, statuses
-from gtm_hit.ops.pay.csv_files import safe
 
 Kind, State = OutboxRow.Kind, OutboxRow.State
 KINDS = {
@@ -65,9 +65,9 @@ def line(row: OutboxRow) -> list[str]:
         case Kind.BONUS_PAY:
             return [row.submission, f"{row.amount:.2f}"]
         case Kind.REJECT:
-            return [row.submission, row.payload["category"], safe(row.payload["message"])]
+            return [row.submission, row.payload["category"], harmless(row.payload["message"])]
         case Kind.REQUEST_RETURN:
-            return [row.submission, "", safe("; ".join(row.payload["reasons"]))]
+            return [row.submission, "", harmless("; ".join(row.payload["reasons"]))]
     return [row.submission]
 
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Iterable
 from typing import Any
 
 from gtm_hit.models import Campaign
+from gtm_hit.ops.files.csv_text import csv_text
 from gtm_hit.ops.pay import table
 
 WORKERS = (
@@ -18,7 +16,7 @@ LINES = ("at", "worker", "kind", "amount", "currency", "batch", "by", "note", "t
 
 
 def workers(campaign: Campaign) -> str:
-    return written(WORKERS, (worker_line(campaign, each) for each in table.workers(campaign)))
+    return csv_text(WORKERS, (worker_line(campaign, each) for each in table.workers(campaign)))
 
 
 def worker_line(campaign: Campaign, each: table.WorkerPay) -> tuple[Any, ...]:
@@ -32,7 +30,7 @@ def worker_line(campaign: Campaign, each: table.WorkerPay) -> tuple[Any, ...]:
 
 def ledger_lines(campaign: Campaign) -> str:
     """Oldest first."""
-    return written(LINES, (ledger_line(each) for each in table.lines_of(campaign).order_by("at", "pk")))
+    return csv_text(LINES, (ledger_line(each) for each in table.lines_of(campaign).order_by("at", "pk")))
 
 
 def ledger_line(each: Any) -> tuple[Any, ...]:
@@ -48,16 +46,3 @@ def ledger_line(each: Any) -> tuple[Any, ...]:
         *(f"{batch.number}/{batch.copy}" if batch else "", each.user.get_username() if each.user else ""),
         *(each.note, each.reverses_id or "", each.pk),
     )
-
-
-def written(header: Iterable[str], rows: Iterable[tuple[Any, ...]]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows([safe(value) for value in row] for row in rows)
-    return text.getvalue()
-
-
-def safe(value: Any) -> Any:
-    """Words that a spreadsheet would take for a formula are told from one; numbers are not."""
-    return f"'{value}" if isinstance(value, str) and value[:1] in {"=", "+", "-", "@", "\t", "\r"} else value

@@ -15,6 +15,7 @@ from gtm_hit.vision.background import Backgrounds
 from gtm_hit.vision.boxes import Box, Detector, Picture
 from gtm_hit.vision.detectors import DetectorError, Params
 from gtm_hit.vision.located import Locator
+from gtm_hit.vision.masks import Masks, Notes
 from gtm_hit.vision.people import FrameProposals
 from gtm_hit.vision.proposing import Method, Proposer, Scene, Settings, usable_method
 
@@ -32,13 +33,15 @@ class SceneLooker:
         self._scene = Scene(cameras, dataset.grid, dataset.cylinder, dataset.rule)
         self._method = method
         self._proposer = Proposer(self._scene, method, detector, settings)
+        self._notes = Notes(self._proposer.backgrounds)
         self.method = method.value
         self.model = detector.version if detector else ""
         self.settings: dict[str, Any] = asdict(settings)
 
     def prepare(self, group: Sequence[StoredPictures]) -> None:
         if self._method in NEEDS_BACKGROUND:
-            self._proposer.backgrounds = Backgrounds.learn(group, self._scene.cameras)
+            self._notes = Notes(Backgrounds.learn(group, self._scene.cameras))
+            self._proposer.backgrounds = self._notes.backgrounds
 
     def look(self, pictures: StoredPictures) -> FrameProposals:
         """Raises ProposalError where the detector does not answer as it should."""
@@ -47,6 +50,9 @@ class SceneLooker:
             return self._proposer.frame(pictures, boxes, pictures.number)
         except DetectorError as error:
             raise ProposalError(f"Frame {pictures.number}: {error}") from error
+
+    def foregrounds(self) -> Masks:
+        return self._notes.take()
 
     def _detect(self, pictures: Mapping[str, Picture]) -> Mapping[str, list[Box]]:
         return self._proposer.boxes(pictures)

@@ -12,10 +12,11 @@ from django.db import transaction
 
 from gtm_hit.models import Dataset, Frame, Proposal, ProposalFrame, ProposalRun
 from gtm_hit.ops.jobs.progress import Progress, no_progress
-from gtm_hit.ops.proposals import tracks
+from gtm_hit.ops.proposals import foregrounds, tracks
 from gtm_hit.ops.proposals.errors import ProposalError
 from gtm_hit.ops.proposals.pictures import StoredPictures, pictures_of
 from gtm_hit.vision import people as found_people
+from gtm_hit.vision.masks import Masks
 from gtm_hit.vision.people import FrameProposals
 
 LOOKING = "looking for people"
@@ -30,6 +31,9 @@ class Looker(Protocol):
         """Learn what frames near each other have in common."""
 
     def look(self, pictures: StoredPictures) -> FrameProposals: ...
+
+    def foregrounds(self) -> Masks:
+        """Of the frame looked at last; empty where no background is known."""
 
 
 @dataclass(frozen=True)
@@ -99,6 +103,7 @@ def _groups(run: ProposalRun, frames: Sequence[Frame]) -> Iterator[_Group]:
 def _look(run: ProposalRun, frame: Frame, pictures: StoredPictures, looker: Looker) -> None:
     began = time.perf_counter()
     found = looker.look(pictures) if pictures else FrameProposals(())
+    foregrounds.keep(run, pictures.digest, looker.foregrounds())  # first: whoever finds the frame finds them
     keep(run, frame, pictures.digest, found, time.perf_counter() - began)
 
 

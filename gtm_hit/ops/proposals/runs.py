@@ -15,6 +15,7 @@ from django.utils.translation import gettext as _
 
 from gtm_hit.formats.calibration.cameras_json import cameras_content, content_digest
 from gtm_hit.models import Dataset, Proposal, ProposalRun
+from gtm_hit.ops.proposals import foregrounds
 from gtm_hit.ops.proposals.errors import ProposalError
 
 CALIBRATION = "calibration"
@@ -131,4 +132,6 @@ def seconds_of(run: ProposalRun) -> float:
 
 def remove(run: ProposalRun) -> None:
     """With everybody it proposed; annotations that came of it stay."""
+    pk = run.pk
     run.delete()
+    transaction.on_commit(lambda: foregrounds.remove(pk))

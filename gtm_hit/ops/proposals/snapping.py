@@ -16,19 +16,19 @@ from gtm_hit.ops.frames import saving
 from gtm_hit.ops.frames.row import Row
 from gtm_hit.ops.frames.saving import Author
 from gtm_hit.ops.jobs.progress import Progress, no_progress
-from gtm_hit.ops.proposals import runs
+from gtm_hit.ops.proposals import foregrounds, runs
 from gtm_hit.ops.proposals.boxes import known_boxes
 from gtm_hit.ops.proposals.errors import ProposalError
 from gtm_hit.ops.proposals.pictures import StoredPictures, pictures_of
-from gtm_hit.vision.background import Backgrounds, Pictures
 from gtm_hit.vision.boxes import Box
+from gtm_hit.vision.masks import Masks
 from gtm_hit.vision.snap import USUAL, Marks, snap
 
 CERTAIN = 0.7  # of a proposal's score: somebody is there
 MARKED = 0.5  # metres between a proposal and a mark of the same person
-UNSEEN = "unseen"  # no detector has looked at the frame
+UNSEEN = "unseen"  # no program has looked at the frame
 SNAPPING = "finding where people stand"
-GROUP = 40  # frames that share a background
+GROUP = 40  # frames whose pictures are asked for together
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,7 @@ class SnappedMark:
     metres: float
     gain: float
     refused: str = ""
+    background: bool = False  # the foreground of the run had a say; else boxes alone
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,17 +54,17 @@ class Sights:
 
     cameras: Mapping[str, Camera]
     boxes: Mapping[str, list[Box]]
-    foregrounds: Mapping[str, np.ndarray]
+    foregrounds: Masks
     proposed: Sequence[Mark] = ()
 
 
 def snap_mark(layer: Layer, frame: Frame, mark: Mark, others: Sequence[Mark]) -> SnappedMark:
-    """Changes nothing; by the boxes that the run shown to annotators has kept. Raises ProposalError."""
+    """Changes nothing; by what the run shown to annotators has kept of the frame. Raises ProposalError."""
     for each in (mark, *others):
         if not 0 <= each.position < layer.dataset.grid.count:
             raise ProposalError(_("Position %(n)d is not on the grid.") % {"n": each.position})
     run = runs.in_use(layer.dataset)
-    sights = _sights(run, frame, pictures_of([frame])[frame.pk], {}) if run else None
+    sights = _sights(run, frame, pictures_of([frame])[frame.pk]) if run else None
     return snapped(layer.dataset, sights, mark, others)
 
 
@@ -79,8 +80,9 @@ def snapped(dataset: Dataset, sights: Sights | None, mark: Mark, others: Sequenc
     place = np.array([(found.x, found.y)])
     position = int(grid.position(place)[0])
     if found.refused is not None or position < 0 or position in {each.position for each in everybody[1:]}:
-        return SnappedMark(mark.position, 0.0, found.gain, found.refused or "near")
-    return SnappedMark(position, float(np.hypot(*(place[0] - bodies[0, :2]))), found.gain)
+        return SnappedMark(mark.position, 0.0, found.gain, found.refused or "near", bool(sights.foregrounds))
+    metres = float(np.hypot(*(place[0] - bodies[0, :2])))
+    return SnappedMark(position, metres, found.gain, background=bool(sights.foregrounds))
 
 
 def unmarked(grid: Grid, proposed: Sequence[Mark], mark: Mark, others: Sequence[Mark]) -> list[Mark]:
@@ -97,19 +99,18 @@ def unmarked(grid: Grid, proposed: Sequence[Mark], mark: Mark, others: Sequence[
     return [each for each, rest in zip(proposed, free.tolist(), strict=True) if rest]
 
 
-def _sights(
-    run: ProposalRun, frame: Frame, pictures: StoredPictures, foregrounds: Mapping[str, np.ndarray]
-) -> Sights | None:
-    """None where the run's detector has not looked at any picture of the frame."""
+def _sights(run: ProposalRun, frame: Frame, pictures: StoredPictures) -> Sights | None:
+    """None where the run has looked at no picture of the frame."""
     boxes = known_boxes(pictures, run.model) if run.model else {}
     looked = ProposalFrame.objects.filter(run=run, frame=frame).first()
     wrong = {each["camera"] for each in looked.suspicious} if looked else set()
     cameras = {each.name: each for each in run.dataset.calibrated_cameras() if each.name not in wrong}
     known = {name: found for name, found in boxes.items() if name in cameras}
-    masks = {name: mask for name, mask in foregrounds.items() if name in cameras}
+    seen = foregrounds.kept(run, pictures.digest)
+    masks = {name: mask for name, mask in seen.items() if name in cameras}
     sure = looked.people.filter(score__gte=CERTAIN, filled=False) if looked else Proposal.objects.none()
     proposed = [Mark(*values) for values in sure.values_list("position", "height")]
-    return Sights(cameras, known, masks, proposed) if known else None
+    return Sights(cameras, known, masks, proposed) if known or masks else None
 
 
 @dataclass(frozen=True)
@@ -118,6 +119,8 @@ class LayerSnapped:
     people: int
     moved: int
     metres: float  # moved, on average
+    unseen: int  # frames at which the run has not looked
+    boxes_alone: int  # frames of which the run has kept no foreground
 
 
 def snap_layer(layer: Layer, author: Author, progress: Progress = no_progress) -> LayerSnapped:
@@ -126,20 +129,24 @@ def snap_layer(layer: Layer, author: Author, progress: Progress = no_progress) -
     Raises ProposalError, and what a save raises.
     """
     run = runs.in_use(layer.dataset)
-    if run is None or not run.model:
+    if run is None:
         raise ProposalError(_("Nothing is proposed for this dataset, so there are no boxes to go by."))
     frames = list(layer.dataset.frames.filter(annotations__layer=layer).distinct().order_by("number"))
     people, metres = 0, []
+    unseen = boxes_alone = 0
     for done, (frame, sights) in enumerate(_all_sights(run, frames), start=1):
         rows = saving.read_frame(layer, frame)
         people += len(rows.annotations)
+        unseen += sights is None
+        boxes_alone += sights is not None and not sights.foregrounds
         moved = _moved(layer, sights, rows.annotations)
         if moved:
             metres += [away for _row, away in moved.values()]
             kept = [moved.get(row.person, (row, 0.0))[0].as_dict() for row in rows.annotations]
             saving.save_frame(layer, frame, author, uuid.uuid4(), rows.revision, kept, done=rows.done)
         progress(SNAPPING, done, len(frames))
-    return LayerSnapped(len(frames), people, len(metres), float(np.mean(metres)) if metres else 0.0)
+    average = float(np.mean(metres)) if metres else 0.0
+    return LayerSnapped(len(frames), people, len(metres), average, unseen, boxes_alone)
 
 
 def _moved(layer: Layer, sights: Sights | None, rows: Sequence[Row]) -> dict[int, tuple[Row, float]]:
@@ -156,17 +163,8 @@ def _moved(layer: Layer, sights: Sights | None, rows: Sequence[Row]) -> dict[int
 
 
 def _all_sights(run: ProposalRun, frames: Sequence[Frame]) -> Iterator[tuple[Frame, Sights | None]]:
-    """With the background of frames that follow each other."""
-    cameras = {each.name: each for each in run.dataset.calibrated_cameras()}
     for start in range(0, len(frames), GROUP):
         together = frames[start : start + GROUP]
         pictures = pictures_of(together)
-        backgrounds = Backgrounds.learn([pictures[each.pk] for each in together], cameras)
         for frame in together:
-            masks = _foregrounds(backgrounds, pictures[frame.pk])
-            yield frame, _sights(run, frame, pictures[frame.pk], masks)
-
-
-def _foregrounds(backgrounds: Backgrounds, pictures: Pictures) -> dict[str, np.ndarray]:
-    known = backgrounds.cameras
-    return {name: known[name].foreground(picture) for name, picture in pictures.items() if name in known}
+            yield frame, _sights(run, frame, pictures[frame.pk])

@@ -30,22 +30,23 @@ DIGITS = 13  # hexadecimal ones, which a float holds exactly
 
 
 @dataclass(frozen=True)
-class Suspicion:
+class ToldSuspicion:
     """How likely it is that work is bad, and why, in words for the reviewer."""
 
     score: float  # 0 to 1
     reasons: tuple[str, ...] = ()
 
 
-def by_scores(assignment: Assignment) -> Suspicion | None:
+def by_scores(assignment: Assignment) -> ToldSuspicion | None:
     if assignment.batch.campaign_id is None:
         return None
     found = scores.suspicion(assignment)
-    return Suspicion(found.value, tuple(words.signal_in_words(asdict(signal)) for signal in found.signals))
+    reasons = (words.signal_in_words(asdict(signal)) for signal in found.signals)
+    return ToldSuspicion(found.value, tuple(reasons))
 
 
 # Each tells what it thinks of a submission, or None; the most suspicious one counts.
-SOURCES: list[Callable[[Assignment], Suspicion | None]] = [by_scores]
+SOURCES: list[Callable[[Assignment], ToldSuspicion | None]] = [by_scores]
 
 
 def after_submission(happened: Happened) -> Following | None:
@@ -72,9 +73,9 @@ def choose(assignment: Assignment) -> ReviewChoice:
     )
 
 
-def suspicion_of(assignment: Assignment) -> tuple[bool, Suspicion | None]:
+def suspicion_of(assignment: Assignment) -> tuple[bool, ToldSuspicion | None]:
     """Whether a source failed, and the highest suspicion. A failing source stops nobody from submitting."""
-    found: list[Suspicion] = []
+    found: list[ToldSuspicion] = []
     try:
         with atomic():
             found = [one for source in SOURCES if (one := source(assignment))]
@@ -84,7 +85,7 @@ def suspicion_of(assignment: Assignment) -> tuple[bool, Suspicion | None]:
     return False, max(found, key=lambda one: one.score, default=None)
 
 
-def reason_to_look(assignment: Assignment, suspicion: Suspicion | None) -> ReviewChoice.Why:
+def reason_to_look(assignment: Assignment, suspicion: ToldSuspicion | None) -> ReviewChoice.Why:
     campaign = assignment.batch.campaign
     if campaign is None or campaign.review_share >= 1.0:
         return Why.ALL

@@ -4,18 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from django.http import Http404, HttpResponse
+from django.http import Http404
 from django.utils.translation import gettext as _
 
 from gtm_hit.models import Campaign, Worker
 from gtm_hit.ops.campaigns import seats
-
-
-def campaign_or_404(slug: str, name: str) -> Campaign:
-    found = Campaign.objects.select_related("dataset").filter(dataset__slug=slug, name=name).first()
-    if found is None:
-        raise Http404(_("There is no campaign “%(name)s”.") % {"name": name})
-    return found
 
 
 def worker_or_404(campaign: Campaign, pseudonym: str) -> Worker:
@@ -35,9 +28,3 @@ def frame(campaign: Campaign, here: str, **more: Any) -> dict[str, Any]:
         "here": here,
         **more,
     }
-
-
-def csv_file(text: str, name: str) -> HttpResponse:
-    response = HttpResponse(text, content_type="text/csv; charset=utf-8")
-    response["Content-Disposition"] = f'attachment; filename="{name}.csv"'
-    return response

@@ -21,8 +21,9 @@ from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.campaigns import links, standing
 from gtm_hit.ops.campaigns.errors import CampaignError
 from gtm_hit.ops.work.workers import MAX_ID
-from gtm_hit.pages.campaigns.common import campaign_or_404, frame
+from gtm_hit.pages.campaigns.common import frame
 from gtm_hit.pages.common.access import StaffRequest, needs
+from gtm_hit.pages.common.campaign_choice import campaign_or_404
 
 ROWS_PER_PAGE = 50
 

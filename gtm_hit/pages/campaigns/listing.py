@@ -17,8 +17,10 @@ from gtm_hit.ops.campaigns import overview, states, tables
 from gtm_hit.ops.campaigns.course import Course, course
 from gtm_hit.ops.campaigns.errors import CampaignError
 from gtm_hit.ops.campaigns.estimate import estimate
-from gtm_hit.pages.campaigns.common import campaign_or_404, csv_file, frame
+from gtm_hit.pages.campaigns.common import frame
 from gtm_hit.pages.common.access import needs
+from gtm_hit.pages.common.attachments import csv_attachment
+from gtm_hit.pages.common.campaign_choice import campaign_or_404
 from gtm_hit.pages.datasets.listing import dataset_or_404
 
 
@@ -78,7 +80,7 @@ def step(request: HttpRequest, slug: str, name: str) -> HttpResponse:
 @needs(Role.MANAGER)
 def batches_csv(request: HttpRequest, slug: str, name: str) -> HttpResponse:
     found = campaign_or_404(slug, name)
-    return csv_file(tables.assignments_csv(found), f"{found.name}-batches")
+    return csv_attachment(tables.assignments_csv(found), f"{found.name}-batches.csv")
 
 
 ONE = "datasets/<slug:slug>/campaigns/<str:name>/"

@@ -14,9 +14,10 @@ from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.campaigns import editing
 from gtm_hit.ops.campaigns.errors import CampaignError
 from gtm_hit.ops.campaigns.estimate import estimate
-from gtm_hit.pages.campaigns.common import campaign_or_404, frame
+from gtm_hit.pages.campaigns.common import frame
 from gtm_hit.pages.campaigns.form import CampaignForm
 from gtm_hit.pages.common.access import StaffRequest, needs
+from gtm_hit.pages.common.campaign_choice import campaign_or_404
 from gtm_hit.pages.datasets.listing import dataset_or_404
 
 

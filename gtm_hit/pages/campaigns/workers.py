@@ -20,8 +20,10 @@ from gtm_hit.ops.campaigns.errors import CampaignError
 from gtm_hit.ops.campaigns.seen import seen
 from gtm_hit.ops.work import links
 from gtm_hit.ops.work.workers import MAX_ID
-from gtm_hit.pages.campaigns.common import campaign_or_404, csv_file, frame, worker_or_404
+from gtm_hit.pages.campaigns.common import frame, worker_or_404
 from gtm_hit.pages.common.access import StaffRequest, needs
+from gtm_hit.pages.common.attachments import csv_attachment
+from gtm_hit.pages.common.campaign_choice import campaign_or_404
 
 ROWS_PER_PAGE = 50
 
@@ -116,14 +118,14 @@ def here(slug: str, name: str, pseudonym: str) -> tuple[Campaign, Worker]:
 @needs(Role.MANAGER)
 def workers_csv(request: HttpRequest, slug: str, name: str) -> HttpResponse:
     campaign = campaign_or_404(slug, name)
-    return csv_file(tables.workers_csv(campaign), f"{campaign.name}-workers")
+    return csv_attachment(tables.workers_csv(campaign), f"{campaign.name}-workers.csv")
 
 
 @require_safe
 @needs(Role.MANAGER)
 def worker_csv(request: HttpRequest, slug: str, name: str, pseudonym: str) -> HttpResponse:
     campaign, found = here(slug, name, pseudonym)
-    return csv_file(tables.assignments_csv(campaign, found), f"{campaign.name}-{found.pseudonym}")
+    return csv_attachment(tables.assignments_csv(campaign, found), f"{campaign.name}-{found.pseudonym}.csv")
 
 
 ALL = "datasets/<slug:slug>/campaigns/<str:name>/"

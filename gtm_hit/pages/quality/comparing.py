@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import dataclass
 from typing import Any
 from urllib.parse import urlencode
@@ -23,6 +21,7 @@ from gtm_hit.metrics.figures import score_curve
 from gtm_hit.metrics.matching import RADIUS
 from gtm_hit.models import Layer
 from gtm_hit.ops.access.roles import SEES, Role, may
+from gtm_hit.ops.files.csv_text import csv_text
 from gtm_hit.ops.quality import agreement
 from gtm_hit.ops.quality.comparing import (
     LARGEST_RADIUS,
@@ -34,9 +33,9 @@ from gtm_hit.ops.quality.comparing import (
 )
 from gtm_hit.ops.quality.layer_rows import QualityError
 from gtm_hit.pages.common.access import needs
+from gtm_hit.pages.common.attachments import attachment, csv_attachment
 from gtm_hit.pages.common.layer_choice import LayerChoice
 from gtm_hit.pages.datasets.listing import dataset_or_404
-from gtm_hit.pages.quality.statistics import attachment
 
 FRAMES_PER_PAGE = 50
 BATCHES_PER_PAGE = 20
@@ -157,12 +156,8 @@ def compare_curve(request: HttpRequest, slug: str) -> HttpResponse:
 def compare_csv(request: HttpRequest, slug: str) -> HttpResponse:
     asked = asked_for(request, slug)
     lines = frame_lines(asked.required()[1])
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    if lines:
-        writer.writerow(lines[0])
-    writer.writerows(line.values() for line in lines)
-    return attachment(stream.getvalue(), "text/csv; charset=utf-8", f"{base_name(asked)}-frames.csv")
+    table = csv_text(lines[0] if lines else (), (line.values() for line in lines))
+    return csv_attachment(table, f"{base_name(asked)}-frames.csv")
 
 
 @require_safe

@@ -29,6 +29,7 @@ from gtm_hit.ops.quality.statistics.measuring import (
     unmeasurable,
 )
 from gtm_hit.pages.common.access import needs
+from gtm_hit.pages.common.attachments import attachment, csv_attachment
 from gtm_hit.pages.common.layer_choice import LayerChoice
 from gtm_hit.pages.datasets.listing import dataset_or_404
 
@@ -133,18 +134,12 @@ def statistics_figure(request: HttpRequest, slug: str, name: str) -> HttpRespons
 def statistics_csv(request: HttpRequest, slug: str) -> HttpResponse:
     asked = asked_for(request, slug)
     table = numbers_csv(*asked.measured())
-    return attachment(table, "text/csv; charset=utf-8", f"{base_name(asked)}-statistics.csv")
+    return csv_attachment(table, f"{base_name(asked)}-statistics.csv")
 
 
 def base_name(asked: Asked) -> str:
     assert asked.layer is not None
     return f"{asked.layer.dataset.slug}-{asked.layer.name}"
-
-
-def attachment(content: str, content_type: str, name: str) -> HttpResponse:
-    """Slugs and layer names hold nothing that would need quoting."""
-    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
-    return HttpResponse(content, content_type=content_type, headers=headers)
 
 
 urlpatterns = [

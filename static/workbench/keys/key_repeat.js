@@ -52,6 +52,6 @@ export class KeyRepeat {
 }
 
 /** @param {number} repeats */
-function paceAfter(repeats) {
+export function paceAfter(repeats) {
   return PACES.find(([after]) => repeats > after)?.[1] ?? 1;
 }

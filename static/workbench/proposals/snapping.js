@@ -15,7 +15,7 @@ import { keyFor } from "../keys/keys.js";
 /** @type {Record<SnapAnswer["refused"], () => string>} */
 const WHY = {
   "": () => "",
-  unseen: () => gettext("No detector has looked at this frame, so nobody knows better"),
+  unseen: () => gettext("No program has looked at this frame, so nobody knows better"),
   nothing: () => gettext("No view shows anybody here whom nobody else explains"),
   small: () => gettext("As far as the views show, this is where the person stands"),
   near: () => gettext("Somebody else stands where the views show this person"),
@@ -76,12 +76,12 @@ export class Snapping {
     const answer = await this._api.ask("POST", "snap/", body).catch(() => null);
     const now = this._store.current === current && this._store.person(person, current);
     if (!now || now.position !== before.position) return undefined;
-    if (answer && !answer.refused) this._move(person, before.position, answer.position);
+    if (answer && !answer.refused) this._move(person, before.position, answer);
     return answer;
   }
 
-  /** @param {number} person @param {number} from @param {number} position */
-  _move(person, from, position) {
+  /** @param {number} person @param {number} from @param {SnapAnswer} answer */
+  _move(person, from, { position, background }) {
     if (position === from || this._store.occupant(position, person)) return;
     const { selection } = this._store;
     const label = gettext("move person {person} to where the views show it", { person });
@@ -91,7 +91,10 @@ export class Snapping {
     const [one, other] = [this._scene.metres(from), this._scene.metres(position)];
     const cm = Math.round(100 * Math.hypot(one.x - other.x, one.y - other.y));
     const words = { cm, key: keyFor("undo") };
-    this._notices.say(gettext("Moved by {cm} cm to where the views show the person – {key} takes it back", words));
+    const said = background
+      ? gettext("Moved by {cm} cm to where the views show the person – {key} takes it back", words)
+      : gettext("Moved by {cm} cm by the boxes alone: this run kept no background – {key} takes it back", words);
+    this._notices.say(said);
   }
 }
 

@@ -12,7 +12,7 @@ from django.core.management import CommandError, call_command
 
 from gtm_hit.models import Annotation, Dataset, Frame, Layer, PictureBoxes, ProposalFrame
 from gtm_hit.ops.frames import saving
-from gtm_hit.ops.proposals import runs, snapping
+from gtm_hit.ops.proposals import foregrounds, runs, snapping
 from gtm_hit.ops.proposals.errors import ProposalError
 from gtm_hit.ops.proposals.pictures import pictures_of
 from gtm_hit.ops.proposals.snapping import Mark
@@ -120,3 +120,17 @@ def test_a_layer_is_snapped_by_saves_that_can_be_taken_back(
 def test_a_layer_cannot_be_snapped_where_nothing_is_proposed(dataset: Dataset, layer: Layer) -> None:
     with pytest.raises(CommandError, match="no boxes to go by"):
         snaplayer()
+
+
+def test_the_kept_foreground_has_a_say_and_without_it_the_boxes_are_said_to_be_alone(
+    dataset: Dataset, layer: Layer, frame: Frame
+) -> None:
+    mark = Mark(position(dataset, PLACE[0] + 0.3, PLACE[1] - 0.1))
+    assert not snapping.snap_mark(layer, frame, mark, []).background
+    Annotation.objects.create(layer=layer, frame=frame, person=1, position=mark.position)
+    assert snaplayer()["boxes_alone"] == 1
+    masks = {camera.name: np.full((54, 96), 0.5, np.float32) for camera in dataset.calibrated_cameras()}
+    foregrounds.keep(runs.runs(dataset)[0], pictures_of([frame])[frame.pk].digest, masks)
+    found = snapping.snap_mark(layer, frame, mark, [])
+    assert found.background and away(dataset, found.position) < APART
+    assert snaplayer()["boxes_alone"] == 0

@@ -36,6 +36,7 @@ class Watcher:
         self.people = people
         self.alarms = tuple(CameraAlarm(name, 3.0, "it stands elsewhere") for name in alarms)
         self.looked: list[int] = []
+        self.masks: dict[str, Any] = {}
         self.before: Callable[[int], None] = lambda number: None
 
     def prepare(self, group: Sequence[StoredPictures]) -> None:
@@ -46,6 +47,9 @@ class Watcher:
         self.before(number)
         self.looked.append(number)
         return FrameProposals(tuple(self.people.get(number, ())), self.alarms)
+
+    def foregrounds(self) -> dict[str, Any]:
+        return self.masks
 
 
 def walk(numbers: Sequence[int], start: XY = (0.0, 0.0), step: XY = (0.3, 0.0)) -> dict[int, list[Proposal]]:

@@ -8,7 +8,7 @@ import pytest
 
 from gtm_hit.models import Assignment, ReviewChoice
 from gtm_hit.ops.review import choosing
-from gtm_hit.ops.review.choosing import Suspicion
+from gtm_hit.ops.review.choosing import ToldSuspicion
 from gtm_hit.ops.review.machine import Action
 from gtm_hit.ops.review.transitions import transition
 from tests.ops.review.scene import REASON, into_campaign, make_reviewer, make_work, state, submitted
@@ -80,7 +80,7 @@ def test_the_suspicious_are_looked_at_with_the_reasons(monkeypatch: pytest.Monke
     into_campaign(dataset, newcomer_batches=0, review_share=0.2)
     scores = {"alice": 0.3, "bob": 0.1, "carl": 0.9}
     monkeypatch.setattr(
-        choosing, "SOURCES", [lambda one: Suspicion(scores[one.worker.external_id], ("very fast",))]
+        choosing, "SOURCES", [lambda one: ToldSuspicion(scores[one.worker.external_id], ("very fast",))]
     )
     works = {name: submitted(name, dataset) for name in scores}
     assert chosen(works["carl"]) == ("suspicion", True)
@@ -92,7 +92,7 @@ def test_a_failing_score_stops_nobody_and_is_looked_at(monkeypatch: pytest.Monke
     dataset = make_work()
     into_campaign(dataset, newcomer_batches=0, review_share=0.0)
 
-    def fails(_assignment: Assignment) -> Suspicion:
+    def fails(_assignment: Assignment) -> ToldSuspicion:
         raise RuntimeError("no score")
 
     monkeypatch.setattr(choosing, "SOURCES", [fails])

@@ -20,6 +20,7 @@ from gtm_hit.ops.campaigns import links as campaign_links
 from gtm_hit.ops.work import links
 from gtm_hit.ops.work.assignments import claim
 from gtm_hit.ops.work.pools import Pool
+from gtm_hit.pages.campaigns import workers
 from gtm_hit.pages.campaigns.form import CampaignForm
 from tests.campaign_scene import make_campaign, make_draft, manager
 from tests.work_scene import do_frames, finish, make_dataset, make_worker
@@ -391,3 +392,13 @@ def test_a_closed_campaign_keeps_its_pages(client: Client, boss: User, campaign:
     for page in ("walk/", "walk/rules/", "walk/links/", "walk/workers/"):
         assert client.get(BASE + page).status_code == 200
     assert "Make a link" not in text(client.get(BASE + "walk/links/"))
+
+
+def test_paging_keeps_what_was_searched(
+    client: Client, boss: User, campaign: Campaign, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(workers, "ROWS_PER_PAGE", 1)
+    for one in ("ada-1", "ada-2"):
+        Worker.objects.filter(pk=standing.invite(campaign, one, boss).worker.pk).update(pseudonym=one)
+    html = client.get(f"{BASE}{campaign.name}/workers/?q=ada").content.decode()
+    assert 'href="?q=ada&amp;page=2"' in html

@@ -10,7 +10,10 @@ from pathlib import Path
 from gtm_hit.ops.datasets.options import ImportOptions
 from gtm_hit.ops.errors import OperationError
 
+MOST_DRIFT = 10_000.0  # parts per million; no clock is a hundredth wrong
 _SOURCE = re.compile(r"\s*(?P<camera>[^=\s]+)\s*=\s*(?P<path>.+?)\s*(?:@\s*(?P<offset>[^@/]*?)\s*)?")
+
+_TIME = re.compile(r"(?P<offset>.*?)\s*(?:(?P<drift>[+-]\s*[0-9.]+)\s*ppm)?")
 
 
 class SourceError(OperationError, ValueError):
@@ -19,11 +22,25 @@ class SourceError(OperationError, ValueError):
 
 @dataclass(frozen=True)
 class VideoSource:
-    """`offset`: seconds in this video at which the time all videos share is 0."""
+    """`offset`: seconds in this video at which the time all videos share is 0.
+
+    `drift`: parts per million by which its clock is fast; after t shared seconds it is at
+    offset + t · (1 + drift / 1,000,000).
+    """
 
     camera: str
     path: Path
     offset: float = 0.0
+    drift: float = 0.0
+
+    @property
+    def pace(self) -> float:
+        """Seconds of this video in a second of the shared time."""
+        return 1 + self.drift / 1e6
+
+    def time(self, shared: float) -> float:
+        """The second in this video at a shared time."""
+        return shared * self.pace + self.offset
 
 
 @dataclass(frozen=True)
@@ -40,14 +57,26 @@ class VideoOptions:
 
 
 def parse_source(text: str) -> VideoSource:
-    """`C1=video.mp4@0.12`: camera, file, and offset in seconds, 0 when it is left out."""
+    """`C1=video.mp4@0.12`: camera, file, and offset in seconds, 0 when it is left out.
+
+    `C1=video.mp4@0.12+35ppm` is one whose clock is fast by 35 millionths.
+    """
     match = _SOURCE.fullmatch(text)
     if match is None:
         raise SourceError(f"{text!r} does not read CAMERA=FILE@SECONDS")
-    try:
-        offset = float(match["offset"] or 0)
-    except ValueError:
-        raise SourceError(f"{text!r}: {match['offset']!r} is no number of seconds") from None
+    time = _TIME.fullmatch(match["offset"] or "")
+    assert time is not None  # it takes whatever comes
+    offset = _number(text, time["offset"], "number of seconds")
+    drift = _number(text, (time["drift"] or "").replace(" ", ""), "number of millionths")
     if not math.isfinite(offset):
         raise SourceError(f"{text!r}: the offset must be finite")
-    return VideoSource(match["camera"], Path(match["path"]), offset)
+    if abs(drift) > MOST_DRIFT:
+        raise SourceError(f"{text!r}: a drift of {drift:.0f} ppm is no clock's")
+    return VideoSource(match["camera"], Path(match["path"]), offset, drift)
+
+
+def _number(text: str, written: str, kind: str) -> float:
+    try:
+        return float(written or 0)
+    except ValueError:
+        raise SourceError(f"{text!r}: {written!r} is no {kind}") from None

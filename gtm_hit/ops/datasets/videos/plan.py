@@ -36,7 +36,7 @@ class Plan:
 
     def time(self, source: VideoSource, number: int) -> float:
         """When a frame is in a video, seconds."""
-        return number / self.rate + source.offset
+        return source.time(number / self.rate)
 
 
 def with_usual_values(options: VideoOptions) -> VideoOptions:
@@ -131,8 +131,8 @@ def _numbers(
     """Frame numbers that lie in all videos, half an interval of tolerance at both ends."""
     spans = {
         source.camera: (
-            -source.offset - facts[source.camera].interval / 2,
-            facts[source.camera].duration - source.offset - facts[source.camera].interval / 2,
+            (-source.offset - facts[source.camera].interval / 2) / source.pace,
+            (facts[source.camera].duration - source.offset - facts[source.camera].interval / 2) / source.pace,
         )
         for source in sources
     }

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-import io
-
 from gtm_hit.metrics.coverage import Coverage
 from gtm_hit.metrics.figures.png import png
+from gtm_hit.ops.files.csv_text import csv_text
 from gtm_hit.ops.quality.statistics.figures import figure
 from gtm_hit.ops.quality.statistics.measuring import LayerStatistics
 from gtm_hit.ops.quality.statistics.numbers import csv_header, csv_lines
 
 
 def numbers_csv(found: LayerStatistics, ground: Coverage) -> str:
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(csv_header())
-    writer.writerows(csv_lines(found, ground))
-    return stream.getvalue()
+    return csv_text(csv_header(), csv_lines(found, ground))
 
 
 def svg_figure(name: str, found: LayerStatistics, ground: Coverage) -> bytes:

@@ -1,0 +1,1 @@
+"""Putting the clocks of several videos together: drafts, the first guess, and their pictures."""
