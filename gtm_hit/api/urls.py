@@ -32,6 +32,7 @@ from gtm_hit.api.common.missing import MissingView
 from gtm_hit.api.datasets import importing, listing, videos
 from gtm_hit.api.desk import boards, desks, lenses
 from gtm_hit.api.desk import ground as desk_ground
+from gtm_hit.api.desk import placing as desk_placing
 from gtm_hit.api.quality import comparing, statistics
 from gtm_hit.api.workbench import decision, frames, tutorial
 from gtm_hit.api.workbench.grids import GridView
@@ -185,6 +186,9 @@ one_dataset += [
 ]
 one_desk: list[URLPattern | URLResolver] = [
     path("", desks.OneDesk.as_view()),
+    path("cameras.json", desk_placing.DeskCamerasJson.as_view()),
+    path("calibrations.zip", desk_placing.DeskFolder.as_view()),
+    path("compare/", desk_placing.CompareDesk.as_view()),
     path("cameras/", desks.DeskCameras.as_view()),
     path("cameras/<str:camera>/", desks.OneDeskCamera.as_view()),
     path("cameras/<str:camera>/boards/", boards.Boards.as_view()),
