@@ -13,6 +13,7 @@ from gtm_hit.crowd.prolific import connect
 from gtm_hit.models import Job
 from gtm_hit.ops.calibration import job as calibration_job
 from gtm_hit.ops.datasets import job
+from gtm_hit.ops.desk import lens_job
 from gtm_hit.ops.exports import expiry, exporting
 from gtm_hit.ops.files import picture_cleanup, sources
 from gtm_hit.ops.jobs import queue
@@ -36,6 +37,7 @@ OPERATIONS: dict[str, queue.Operation] = {
     Job.Kind.MAKE_RELEASE: releasing.run,
     Job.Kind.PROPOSE: proposal_job.run,
     Job.Kind.REPLACE_CALIBRATION: calibration_job.run,
+    Job.Kind.SOLVE_LENS: lens_job.run,
     Job.Kind.STITCH: stitching.run,
     Job.Kind.SYNC_VIDEOS: sync_job.run,
     Job.Kind.SEND_OUTBOX: partial(sending.run, connect=connect),

@@ -21,6 +21,8 @@ KNOWN = {
     "R": "1",
     "C": "walk",
     "W": "w-1",
+    "D": "plaza",
+    "K": "C1",
     "NAME": "LICENSE",
 }
 SHORTENED = {"statistics": "datasets/square/layers/truth", "evaluation": "datasets/square"}

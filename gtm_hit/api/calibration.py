@@ -78,9 +78,12 @@ class VersionSerializer(serializers.ModelSerializer[Calibration]):
 
 class WholeVersionSerializer(VersionSerializer):
     cameras = serializers.DictField(help_text="the content of a cameras.json")
+    report = serializers.DictField(
+        help_text="a desk's: digests of its inputs, settings, figures per camera; empty where a file was sent"
+    )
 
     class Meta(VersionSerializer.Meta):
-        fields = [*VersionSerializer.Meta.fields, "cameras"]
+        fields = [*VersionSerializer.Meta.fields, "cameras", "report"]
 
 
 class MovedInCameraSerializer(serializers.Serializer[Any]):

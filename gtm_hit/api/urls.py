@@ -30,8 +30,9 @@ from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, St
 from gtm_hit.api.common.docs import DocsView
 from gtm_hit.api.common.missing import MissingView
 from gtm_hit.api.datasets import importing, listing, videos
-from gtm_hit.api.desk import desks, lenses
+from gtm_hit.api.desk import boards, desks, lenses
 from gtm_hit.api.desk import ground as desk_ground
+from gtm_hit.api.desk import placing as desk_placing
 from gtm_hit.api.quality import comparing, statistics
 from gtm_hit.api.workbench import decision, frames, tutorial
 from gtm_hit.api.workbench.grids import GridView
@@ -185,12 +186,21 @@ one_dataset += [
 ]
 one_desk: list[URLPattern | URLResolver] = [
     path("", desks.OneDesk.as_view()),
+    path("cameras.json", desk_placing.DeskCamerasJson.as_view()),
+    path("calibrations.zip", desk_placing.DeskFolder.as_view()),
+    path("compare/", desk_placing.CompareDesk.as_view()),
     path("cameras/", desks.DeskCameras.as_view()),
     path("cameras/<str:camera>/", desks.OneDeskCamera.as_view()),
+    path("cameras/<str:camera>/boards/", boards.Boards.as_view()),
+    path("cameras/<str:camera>/boards/search/", boards.SearchBoards.as_view()),
+    path("cameras/<str:camera>/boards/<int:picture>/", boards.OneBoardPicture.as_view()),
     path("cameras/<str:camera>/clicks/", desk_ground.PairsFile.as_view()),
     path("cameras/<str:camera>/clicks/<str:point>/", desk_ground.OneClick.as_view()),
     path("cameras/<str:camera>/lens/", lenses.DeskLens.as_view()),
     path("cameras/<str:camera>/lens/file/", lenses.DeskLensFile.as_view()),
+    path("cameras/<str:camera>/lens/choose/", boards.ChooseViews.as_view()),
+    path("cameras/<str:camera>/lens/model/", boards.SolveModel.as_view()),
+    path("cameras/<str:camera>/lens/undistorted.jpg", boards.UndistortedPicture.as_view()),
     path("cameras/<str:camera>/lens/in-place/", lenses.DeskLensInPlace.as_view()),
     path("cameras/<str:camera>/picture/", desk_ground.GroundPicture.as_view()),
     path("ground/", gzip_page(desk_ground.Ground.as_view())),
@@ -202,6 +212,7 @@ one_desk: list[URLPattern | URLResolver] = [
     re_path(r"^pictures/(?P<digest>[0-9a-f]{64})\.jpg$", desks.DeskImage.as_view(), name="desk-picture"),
 ]
 scripts: list[URLPattern | URLResolver] = [
+    path("calibration-board.<slug:kind>", boards.BoardSheet.as_view()),
     path("calibration-desks/", desks.Desks.as_view()),
     path("calibration-desks/<slug:desk>/", include(one_desk)),
     path("datasets/", listing.Datasets.as_view()),

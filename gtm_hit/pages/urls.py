@@ -24,8 +24,11 @@ from gtm_hit.pages.campaigns import rules as campaign_rules
 from gtm_hit.pages.campaigns import workers as campaign_workers
 from gtm_hit.pages.datasets import importing as dataset_imports
 from gtm_hit.pages.datasets import listing as datasets
+from gtm_hit.pages.desk import board as desk_board
 from gtm_hit.pages.desk import desks
 from gtm_hit.pages.desk import ground as desk_ground
+from gtm_hit.pages.desk import lens as desk_lens
+from gtm_hit.pages.desk import place as desk_place
 from gtm_hit.pages.layers import importing as annotation_imports
 from gtm_hit.pages.layers import listing as layers
 from gtm_hit.pages.quality import comparing, statistics, text_files
@@ -53,6 +56,9 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *calibration.urlpatterns,
     *desks.urlpatterns,
     *desk_ground.urlpatterns,
+    *desk_lens.urlpatterns,
+    *desk_board.urlpatterns,
+    *desk_place.urlpatterns,
     *api_tokens.urlpatterns,
     *people.urlpatterns,
     *hooks.urlpatterns,

@@ -9,7 +9,7 @@ from django.contrib.auth.models import User
 from django.core.files.base import ContentFile
 from django.core.files.storage import default_storage
 
-from gtm_hit.models import Assignment, Dataset, Job, Layer, ProposalRun, Release
+from gtm_hit.models import Assignment, BoardPicture, Dataset, Job, Layer, ProposalRun, Release
 from gtm_hit.ops.access import granting
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.desk import desks
@@ -79,10 +79,15 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
     grid = grid_files.digest_of(dataset, dataset.calibrated_cameras()[0])
     run = ProposalRun.objects.create(dataset=dataset, method=ProposalRun.Method.BACKGROUND, digest="0" * 64)
     desk = f"calibration-desks/desk-of-{dataset.slug}"
-    desk_points.put(desks.make(desk.partition("/")[2], dataset=dataset), "A1", 0.0, 0.0)
+    board_picture = desk_of(dataset, desk.partition("/")[2], picture)
     return {
         "calibration-desks/<slug:desk>": desk,
+        "boards/<int:picture>": f"boards/{board_picture.pk}",
+        "calibration-board.<slug:kind>": "calibration-board.svg",
         "cameras/<str:camera>": "cameras/C1",
+        "lens/<str:camera>": "lens/C1",
+        "lens/<str:camera>/<slug:what>": "lens/C1/choose",
+        "pictures/<int:picture>": f"pictures/{board_picture.pk}",
         "clicks/<str:point>": "clicks/A1",
         "named/<str:point>": "named/A1",
         "pictures/(?P<digest>[0-9a-f]{64})": f"pictures/{picture}",
@@ -109,6 +114,14 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
         "work/<str:token>": f"work/{links.worker_token(assignment.worker, dataset)}",
         "annotate/<str:token>": f"annotate/{links.assignment_token(assignment)}",
     }
+
+
+def desk_of(dataset: Dataset, slug: str, picture: str) -> BoardPicture:
+    made = desks.make(slug, dataset=dataset)
+    desk_points.put(made, "A1", 0.0, 0.0)
+    camera = made.cameras.all()[0]
+    values = {"light_digest": picture, "full_digest": picture, "width": 1920, "height": 1080}
+    return BoardPicture.objects.create(camera=camera, name="board.png", source_digest=picture, **values)
 
 
 def somebody(name: str, role: Role | None = None, dataset: Dataset | None = None) -> User:

@@ -29,11 +29,14 @@ from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.geometry.cylinder import FootRule
 from gtm_hit.models import ApiToken, Dataset
 from gtm_hit.models.dataset import name_validator
+from gtm_hit.ops.access.desks import desks_of
 from gtm_hit.ops.access.jobs import NOT_YOURS, may_import
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.calibration.cameras import UNITS
 from gtm_hit.ops.datasets import job as import_jobs
 from gtm_hit.ops.datasets.options import PRESETS, ImportOptions, scene
+from gtm_hit.ops.desk import placing
+from gtm_hit.ops.desk.errors import DeskError
 from gtm_hit.ops.files import sources
 from gtm_hit.ops.layers import job as annotation_import
 from gtm_hit.ops.layers.findings import Kind
@@ -105,6 +108,9 @@ class ImportSerializer(SceneSerializer):
     hidden_layer = StrictBooleanField(default=False)
     undistort = StrictBooleanField(default=False)
     keep_all_frames = StrictBooleanField(default=False)
+    desk = serializers.SlugField(
+        max_length=80, required=False, help_text="a calibration desk whose cameras are used instead of a file"
+    )
 
 
 class ImportAnnotationsSerializer(serializers.Serializer[Any]):
@@ -132,6 +138,17 @@ def source_named(request: Request, key: str) -> sources.Source:
 
 def refused(place: str, error: FormatError) -> exceptions.ValidationError:
     return exceptions.ValidationError({place: [str(problem) for problem in error.problems]})
+
+
+def cameras_of_desk(request: Request, slug: str) -> str:
+    """A file of its cameras, for an import to read."""
+    desk = desks_of(caller(request)).filter(slug=slug).first()
+    if desk is None:
+        raise invalid("desk", _("There is no such desk; see /api/v1/calibration-desks/."))
+    try:
+        return str(placing.cameras_file(desk))
+    except DeskError as error:
+        raise invalid("desk", error) from error
 
 
 def refuse_impossible(options: dict[str, Any]) -> None:
@@ -209,7 +226,10 @@ class Imports(StaffView):
             raise invalid("slug", NOT_YOURS % {"slug": options["slug"]})
         source = source_named(request, options.pop("source"))
         options["values"] = dict(options["values"])
+        desk = options.pop("desk", None)
         refuse_impossible(options)
+        if desk is not None:
+            options["calibrations"] = cameras_of_desk(request, desk)
         return started(import_jobs.start_import(source, options, caller(request)))
 
 

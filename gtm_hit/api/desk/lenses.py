@@ -57,7 +57,7 @@ class DeskLens(DeskView):
     )
     def get(self, request: Request, desk: str, camera: str) -> Response:
         with told():
-            return Response(_lens(desk_or_404(request, desk), camera))
+            return Response(lens_answer(desk_or_404(request, desk), camera))
 
     @extend_schema(
         operation_id="put_desk_lens",
@@ -73,7 +73,7 @@ class DeskLens(DeskView):
             lenses.put(
                 found, camera, size, given["matrix"], given["distortion"], given["source"], caller(request)
             )
-            return Response(_lens(found, camera))
+            return Response(lens_answer(found, camera))
 
 
 class DeskLensFile(DeskView):
@@ -91,7 +91,7 @@ class DeskLensFile(DeskView):
         data, name = sent_file(request)
         with told("file"):
             lenses.put_file(found, camera, data, name, caller(request))
-            return Response(_lens(found, camera))
+            return Response(lens_answer(found, camera))
 
 
 class DeskLensInPlace(DeskView):
@@ -105,9 +105,9 @@ class DeskLensInPlace(DeskView):
         found = desk_or_404(request, desk)
         with told():
             lenses.put_in_place(found, camera, caller(request))
-            return Response(_lens(found, camera))
+            return Response(lens_answer(found, camera))
 
 
-def _lens(desk: Desk, camera: str) -> dict[str, Any]:
+def lens_answer(desk: Desk, camera: str) -> dict[str, Any]:
     row = lenses.camera_of(desk, camera)
     return {"width": row.width, "height": row.height, "lens": row.lens, "report": row.lens_report}

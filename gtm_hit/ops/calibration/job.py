@@ -22,16 +22,23 @@ SHARES = {replacing.RECTANGLES: (0, 60), replacing.COMPARING: (60, 100)}
 
 
 def start(
-    dataset: Dataset, cameras: Sequence[Camera], user: User | None = None, source: str = "", version: int = 0
+    dataset: Dataset,
+    cameras: Sequence[Camera],
+    user: User | None = None,
+    source: str = "",
+    version: int = 0,
+    report: dict[str, Any] | None = None,
 ) -> Job:
     """The numbers go into the job's row: no file has to outlive the request.
 
-    `source`: where they come from, in words; `version`: their number where the dataset had them before.
+    `source`: where they come from, in words; `version`: their number where the dataset had them before;
+    `report`: a desk's, which is kept with them when they are put in place.
     """
     parameters = {
         "cameras": [camera_facts(camera) for camera in cameras],
         "source": source,
         "version": version or None,
+        **({"report": report} if report else {}),
     }
     return queue.create_once(Job.Kind.REPLACE_CALIBRATION, dataset, parameters, user)
 
@@ -58,7 +65,12 @@ def confirm(job: Job, user: User | None = None) -> None:
         if "confirmed_at" in job.result:
             raise ReplacementError("This calibration was put in place before.")
         placed = replacing.replace_calibration(
-            job.dataset, cameras_of(job), job.result, job.parameters.get("source", ""), user
+            job.dataset,
+            cameras_of(job),
+            job.result,
+            job.parameters.get("source", ""),
+            user,
+            job.parameters.get("report"),
         )
         confirmed = {
             "confirmed_at": timezone.now().isoformat(),

@@ -64,6 +64,7 @@ def replace_calibration(
     seen: dict[str, Any],
     source: str = "",
     user: User | None = None,
+    report: dict[str, Any] | None = None,
 ) -> Calibration:
     """Put the cameras of a preview in place; what was there before stays under its number.
 
@@ -82,7 +83,7 @@ def replace_calibration(
             row.rvec, row.tvec = camera.rvec.tolist(), camera.tvec.tolist()
             row.model = camera.model.value
             row.save(update_fields=["matrix", "distortion", "rvec", "tvec", "model"])
-        return versions.put_in_place(dataset, cameras, source, user)
+        return versions.put_in_place(dataset, cameras, source, user, report)
 
 
 def state_of(dataset: Dataset) -> list[Any]:

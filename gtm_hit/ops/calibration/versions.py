@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from django.contrib.auth.models import User
 from django.db.models import Max, QuerySet
@@ -53,9 +54,15 @@ def cameras_in(calibration: Calibration) -> list[Camera]:
 
 
 def put_in_place(
-    dataset: Dataset, cameras: Sequence[Camera], source: str, user: User | None = None
+    dataset: Dataset,
+    cameras: Sequence[Camera],
+    source: str,
+    user: User | None = None,
+    report: dict[str, Any] | None = None,
 ) -> Calibration:
     """Give the cameras the dataset's next number, or the one they had before, and refer to them.
+
+    `report`: what a desk knows of how they came about.
 
     The rows of `Camera` are the caller's business, and so is the lock on the dataset's row.
     """
@@ -70,6 +77,7 @@ def put_in_place(
             cameras=content,
             digest=digest,
             source=source[:SOURCE_LENGTH],
+            report=report or {},
             created_by=user,
         )
     dataset.calibration = found

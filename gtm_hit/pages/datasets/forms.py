@@ -11,12 +11,15 @@ from django.utils.translation import gettext_lazy
 from gtm_hit.formats.problems import FormatError, ProblemList
 from gtm_hit.geometry.cylinder import FootRule
 from gtm_hit.models import Dataset
+from gtm_hit.ops.access.desks import desks_of
 from gtm_hit.ops.access.jobs import NOT_YOURS, may_import
 from gtm_hit.ops.calibration.cameras import UNITS
 from gtm_hit.ops.datasets import job
 from gtm_hit.ops.datasets.options import PRESETS, REQUIRED, ImportOptions, SceneValues, scene
 from gtm_hit.ops.datasets.videos.options import SourceError, VideoSource, parse_source
 from gtm_hit.ops.datasets.videos.plan import USUAL
+from gtm_hit.ops.desk import placing
+from gtm_hit.ops.desk.errors import DeskError
 from gtm_hit.ops.files import sources
 
 PRESET_NAMES = {"wildtrack": "WILDTRACK", "multiviewx": "MultiviewX"}
@@ -127,6 +130,7 @@ class DatasetForm(SceneForm):
     keep_all_frames = forms.BooleanField(
         label=gettext_lazy("Import the frame numbers between the steps too"), required=False
     )
+    desk = forms.SlugField(required=False, widget=forms.HiddenInput)
 
     def __init__(self, user: User, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -145,9 +149,25 @@ class DatasetForm(SceneForm):
             self.add_error("archive", _("Choose an archive here, or a folder or archive on the server."))
         return cleaned
 
+    def clean_desk(self) -> str:
+        """The file of the desk's cameras; empty without a desk."""
+        slug: str = self.cleaned_data["desk"]
+        if not slug:
+            return ""
+        desk = desks_of(self.user).filter(slug=slug).first()
+        if desk is None:
+            raise forms.ValidationError(_("There is no desk %(slug)s.") % {"slug": slug})
+        try:
+            return str(placing.cameras_file(desk))
+        except DeskError as error:
+            raise forms.ValidationError(str(error)) from error
+
     def options(self) -> dict[str, Any]:
         names = ("layer", "hidden_layer", "undistort", "keep_all_frames")
-        return {**super().options(), **{name: self.cleaned_data.get(name) for name in names}}
+        found = {**super().options(), **{name: self.cleaned_data.get(name) for name in names}}
+        return (
+            {**found, "calibrations": self.cleaned_data["desk"]} if self.cleaned_data.get("desk") else found
+        )
 
 
 class VideosForm(SceneForm):

@@ -25,7 +25,8 @@ KINDS = [Job.Kind.IMPORT_DATASET, Job.Kind.IMPORT_VIDEOS]
 @require_http_methods(["GET", "HEAD", "POST"])
 @takes_uploads(Role.MAINTAINER)
 def new_dataset(request: StaffRequest) -> HttpResponse:
-    form = DatasetForm(request.user, request.POST or None, request.FILES or None)
+    initial = {"desk": request.GET.get("desk", "")}
+    form = DatasetForm(request.user, request.POST or None, request.FILES or None, initial=initial)
     if request.method == "POST" and form.is_valid() and (source := _chosen(form)):
         return redirect("job", pk=import_jobs.start_import(source, form.options(), request.user).pk)
     found = jobs_of(request.user).filter(kind__in=KINDS)

@@ -30,7 +30,7 @@ const painter = { paint };
 function paint() {
   const { camera, ground } = store;
   page.dataset.camera = camera?.name ?? "";
-  setText(part("point"), store.selected ?? "–");
+  setText(part("now"), store.selected ?? "–");
   picture.marks.replaceChildren(...marks(store, picture.unit, view.grid));
   magnifier.at(view.hover ?? store.place);
   panel.draw();

@@ -62,7 +62,8 @@ function circle(x, y, unit) {
 function arrow(store, name, { x, y }) {
   const residual = store.camera.report.residuals?.find((each) => each.name === name);
   if (!store.clickOf(name) || !residual || residual.dx === null || residual.dy === null) return [];
-  const end = { x2: x - LONGER * residual.dx, y2: y - LONGER * residual.dy };
+  const longer = residual.used ? LONGER : 1; // one that was left out is far off as it is
+  const end = { x2: x - longer * residual.dx, y2: y - longer * residual.dy };
   return [svg("line", { class: "residual", x1: x, y1: y, ...end })];
 }
 

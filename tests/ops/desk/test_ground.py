@@ -79,7 +79,7 @@ def test_the_overview_names_one_next_step_after_the_other() -> None:
     desk = make_desk()
     assert overview.overview(desk).next_step.words == "Click points in C1."
     click(desk, " ".join(seen(desk)))
-    assert overview.overview(desk).cameras[0].ground.verdict is Verdict.USABLE  # a small hull
+    assert overview.overview(desk).cameras[0].ground.verdict is Verdict.GOOD
     assert overview.overview(desk).next_step.words == "Click points in C2."
     click(desk, " ".join(seen(desk, "C2")), "C2")
     assert overview.overview(desk).next_step.words == "Put the calibration in place."
