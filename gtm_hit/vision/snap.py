@@ -23,6 +23,7 @@ from gtm_hit.vision.placing import placed
 from gtm_hit.vision.sights import Sight
 from gtm_hit.vision.silhouettes import SilhouetteSettings
 
+MARKED = 0.5  # metres between a proposal and a mark of the same person
 USUAL = CoverSettings().heights[0][0]  # metres: of whoever has no height of their own
 
 
@@ -51,6 +52,18 @@ class Marks:
 
     one: Floats  # (3,) x, y, height: metres
     others: Floats  # (N, 3)
+
+
+def with_unmarked(marks: Marks, proposed: Floats) -> Marks:
+    """Proposals (N, 3) explain the boxes of those who are not marked yet: else theirs would pull the one.
+
+    They are of people who are neither marked nor the one meant, who is the one nearest to the mark.
+    """
+    free = _apart(proposed, marks.others) > MARKED
+    off = np.hypot(*(proposed - marks.one)[:, :2].T)
+    if free.any():
+        free[np.flatnonzero(free)[off[free].argmin()]] = False
+    return Marks(marks.one, np.vstack((marks.others, proposed[free])))
 
 
 @dataclass(frozen=True)

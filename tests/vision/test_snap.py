@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gtm_hit.vision.background import Backgrounds
-from gtm_hit.vision.snap import Marks, Refused, snap
+from gtm_hit.vision.snap import Marks, Refused, snap, with_unmarked
 from tests.vision.plaza import CAMERAS, all_boxes, pictures
 
 ADA, BO = (-1.0, 0.3, 1.72), (0.4, -0.8, 1.72)
@@ -74,3 +74,12 @@ def test_the_background_corrects_boxes_that_are_all_off_to_one_side() -> None:
     click = marks((person[0] + 0.3, person[1]))
     plain, refined = snap(click, shifted, CAMERAS), snap(click, shifted, CAMERAS, masks)
     assert off(refined.x, refined.y, person) < off(plain.x, plain.y, person)
+
+
+def test_somebody_proposed_explains_their_boxes_before_they_are_marked() -> None:
+    here, beside, far = ((0.5 + off, 0.25, 1.72) for off in (0.0, 0.6, 2.0))
+    click = (0.4, 0.25)
+    everybody = np.array([here, beside, far])
+    assert with_unmarked(marks(click), everybody).others.tolist() == [list(beside), list(far)]
+    assert with_unmarked(marks(click, far), everybody).others.tolist() == [list(far), list(beside)]
+    assert with_unmarked(marks(click, far), NOBODY).others.tolist() == [list(far)]

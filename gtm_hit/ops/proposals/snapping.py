@@ -22,10 +22,9 @@ from gtm_hit.ops.proposals.errors import ProposalError
 from gtm_hit.ops.proposals.pictures import StoredPictures, pictures_of
 from gtm_hit.vision.boxes import Box
 from gtm_hit.vision.masks import Masks
-from gtm_hit.vision.snap import USUAL, Marks, snap
+from gtm_hit.vision.snap import USUAL, Marks, snap, with_unmarked
 
 CERTAIN = 0.7  # of a proposal's score: somebody is there
-MARKED = 0.5  # metres between a proposal and a mark of the same person
 UNSEEN = "unseen"  # no program has looked at the frame
 SNAPPING = "finding where people stand"
 GROUP = 40  # frames whose pictures are asked for together
@@ -73,30 +72,21 @@ def snapped(dataset: Dataset, sights: Sights | None, mark: Mark, others: Sequenc
     if sights is None:
         return SnappedMark(mark.position, 0.0, 0.0, UNSEEN)
     grid = dataset.grid
-    everybody = (mark, *others, *unmarked(grid, sights.proposed, mark, others))
-    xy = grid.metres([each.position for each in everybody])
-    bodies = np.column_stack((xy, [each.height or USUAL for each in everybody]))
-    found = snap(Marks(bodies[0], bodies[1:]), sights.boxes, sights.cameras, sights.foregrounds)
+    bodies, proposed = _bodies(grid, (mark, *others)), _bodies(grid, sights.proposed)
+    marks = with_unmarked(Marks(bodies[0], bodies[1:]), proposed)
+    found = snap(marks, sights.boxes, sights.cameras, sights.foregrounds)
     place = np.array([(found.x, found.y)])
     position = int(grid.position(place)[0])
-    if found.refused is not None or position < 0 or position in {each.position for each in everybody[1:]}:
+    if found.refused is not None or position < 0 or position in {each.position for each in others}:
         return SnappedMark(mark.position, 0.0, found.gain, found.refused or "near", bool(sights.foregrounds))
     metres = float(np.hypot(*(place[0] - bodies[0, :2])))
     return SnappedMark(position, metres, found.gain, background=bool(sights.foregrounds))
 
 
-def unmarked(grid: Grid, proposed: Sequence[Mark], mark: Mark, others: Sequence[Mark]) -> list[Mark]:
-    """Proposals of people who are neither marked nor the one meant, who is the one nearest to the mark."""
-    if not proposed:
-        return []
-    places = grid.metres([each.position for each in proposed])
-    marked = grid.metres([each.position for each in others])
-    away = places[:, None] - marked[None]
-    free = np.hypot(away[..., 0], away[..., 1]).min(axis=1, initial=np.inf) > MARKED
-    off = np.hypot(*(places - grid.metres([mark.position])[0]).T)
-    if free.any():
-        free[np.flatnonzero(free)[off[free].argmin()]] = False
-    return [each for each, rest in zip(proposed, free.tolist(), strict=True) if rest]
+def _bodies(grid: Grid, marks: Sequence[Mark]) -> np.ndarray:
+    """(N, 3): x, y, height."""
+    xy = grid.metres([each.position for each in marks]).reshape(-1, 2)
+    return np.column_stack((xy, [each.height or USUAL for each in marks]))
 
 
 def _sights(run: ProposalRun, frame: Frame, pictures: StoredPictures) -> Sights | None:

@@ -75,15 +75,6 @@ def test_cameras_that_contradict_all_others_are_not_believed(
     assert snapping.snap_mark(layer, frame, Mark(position(dataset, *PLACE)), []).refused == "unseen"
 
 
-def test_somebody_proposed_explains_their_boxes_before_they_are_marked(dataset: Dataset) -> None:
-    grid = dataset.grid
-    here, beside, far = (Mark(position(dataset, 0.5 + off, 0.25)) for off in (0.0, 0.6, 2.0))
-    click = Mark(position(dataset, 0.4, 0.25))
-    assert snapping.unmarked(grid, [here, beside, far], click, []) == [beside, far]
-    assert snapping.unmarked(grid, [here, beside, far], click, [far]) == [beside]
-    assert snapping.unmarked(grid, [], click, [far]) == []
-
-
 @pytest.mark.parametrize("other", [False, True])
 def test_positions_off_the_grid_are_refused(
     dataset: Dataset, layer: Layer, frame: Frame, other: bool
