@@ -83,7 +83,7 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
     return {
         "calibration-desks/<slug:desk>": desk,
         "boards/<int:picture>": f"boards/{board_picture.pk}",
-        "calibration-board.<slug:kind>": "calibration-board.svg",
+        "calibration-board.<slug:kind>": "calibration-board.svg?kind=chessboard&columns=9&rows=6&spacing=0.03",
         "cameras/<str:camera>": "cameras/C1",
         "lens/<str:camera>": "lens/C1",
         "lens/<str:camera>/<slug:what>": "lens/C1/choose",
