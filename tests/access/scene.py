@@ -23,6 +23,7 @@ from tests.work_scene import make_dataset, make_layer, make_worker, row, save
 
 HERE, ELSEWHERE = "square", "elsewhere"
 SECRET = "secret-truth"  # the name of the hidden layers
+BOARD = "calibration-board.<slug:kind>"  # a sheet for every dataset
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,10 @@ class Place:
                 f"{route}: the scene has no example for {left[0]}; add one to tests/access/scene.py"
             )
         return "/" + path
+
+    def within(self, route: str) -> bool:
+        """Whether the address names something that belongs to a dataset."""
+        return self.address(route) != "/" + route and BOARD not in route
 
 
 def make_place(slug: str) -> Place:
@@ -83,7 +88,7 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
     return {
         "calibration-desks/<slug:desk>": desk,
         "boards/<int:picture>": f"boards/{board_picture.pk}",
-        "calibration-board.<slug:kind>": "calibration-board.svg?kind=chessboard&columns=9&rows=6&spacing=0.03",
+        BOARD: "calibration-board.svg?kind=chessboard&columns=9&rows=6&spacing=0.03",
         "cameras/<str:camera>": "cameras/C1",
         "lens/<str:camera>": "lens/C1",
         "lens/<str:camera>/<slug:what>": "lens/C1/choose",

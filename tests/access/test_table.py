@@ -124,9 +124,7 @@ def check(caller: Caller, place: Place, *, foreign: bool = False) -> None:
     """All lines at once; `foreign`: a dataset the caller has nothing to do with."""
     problems = []
     for (route, method), need in LINES.items():
-        within = place.address(route) != "/" + route  # names something that belongs to a dataset
-        allowed = caller.may(need)
-        allowed = allowed and not (foreign and within)
+        allowed = caller.may(need) and not (foreign and place.within(route))
         problems.append(wrong(caller, place, route, method, allowed=allowed))
     assert "\n".join(filter(None, problems)) == ""
 
@@ -213,7 +211,7 @@ def test_a_token_may_what_its_owner_may_until_the_role_is_taken(places: Places, 
 
 
 def foreign_problem(caller: Caller, place: Place, route: str, method: str) -> str:
-    if place.address(route) == "/" + route:
+    if not place.within(route):
         return ""
     return wrong(caller, place, route, method, allowed=False)
 
