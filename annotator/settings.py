@@ -157,6 +157,8 @@ SPECTACULAR_SETTINGS = {
         "StitchConflictDecision": "gtm_hit.models.stitching.StitchConflict.Decision",
         "OutboxState": "gtm_hit.models.outbox.OutboxRow.State",
         "OutboxKind": "gtm_hit.models.outbox.OutboxRow.Kind",
+        "BoardKind": "gtm_hit.ops.desk.board_choices.KINDS",
+        "LengthUnit": ["m", "cm", "mm"],
     },
 }
 

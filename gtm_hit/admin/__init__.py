@@ -16,6 +16,7 @@ from gtm_hit.admin import (
     quality,
     review,
     stitching,
+    sync,
     work,
 )
 
@@ -31,6 +32,7 @@ __all__ = [
     "quality",
     "review",
     "stitching",
+    "sync",
     "work",
 ]
 

@@ -192,8 +192,9 @@ class Story:
         return page
 
     def hour_passes(self) -> None:
-        """Since batches were taken: the server believes no more time than has passed."""
+        """Since batches were taken and saved: the server believes no more time than has passed."""
         self.site.sql("UPDATE gtm_hit_assignment SET leased_at = leased_at - interval '1 hour'")
+        self.site.sql("UPDATE gtm_hit_workclock SET seen_at = seen_at - interval '1 hour'")
 
     def works(self, batch: Batch, how: Any, seconds: float) -> str:
         self.hour_passes()

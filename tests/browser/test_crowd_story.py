@@ -228,6 +228,7 @@ def returned_and_mended(tale: Story, rita: Page, batch: Batch) -> None:
     decided(tale, rita, pk, "returned")
 
     sam = story.somebody(tale.browser, tale.errors)
+    tale.hour_passes()
     batch.annotate(story.careful, 60)
     sam.goto(f"{tale.address}/annotate/{batch.token}/")
     expect(sam.locator("#workbench")).to_have_attribute("data-ready", "true")

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.browser
 STATIC = REPOSITORY / "static"
 STARTING = {
     *("workbench/main.js", "workbench/start.js", "workbench/comments/start.js"),
-    *("compare/main.js", "review/main.js", "conflicts/main.js"),
+    *("compare/main.js", "review/main.js", "conflicts/main.js", "calibration/ground/main.js"),
 }
 SCRIPTS = {
     f"site/{path.name}" for path in (STATIC / "site").glob("*.js")

@@ -35,7 +35,7 @@ def globe(x: float, y: float, z: float, size: float) -> np.ndarray:
 
 
 @settings(max_examples=40, deadline=None)
-@given(st.floats(0.1, 1.2), st.floats(3.0, 30.0), st.floats(-0.5, 0.5))
+@given(st.floats(0.1, 0.8), st.floats(3.0, 30.0), st.floats(-0.5, 0.5))
 def test_a_ball_is_a_disc_without_holes(size: float, away: float, aside: float) -> None:
     sprite = draw(CAMERA, mesh_of(globe(aside, 0, away, size)))
     assert sprite is not None

@@ -51,7 +51,7 @@ class SendBoardsSerializer(SearchSerializer):
     )
 
 
-class SwitchSerializer(serializers.Serializer[Any]):
+class PictureSwitchSerializer(serializers.Serializer[Any]):
     used = StrictBooleanField()
 
 
@@ -141,13 +141,13 @@ class OneBoardPicture(DeskView):
     @extend_schema(
         operation_id="switch_board_picture",
         summary="Let a picture take part in the solve, or not; solves again at once",
-        request=SwitchSerializer,
+        request=PictureSwitchSerializer,
         responses=answers(200, DeskLensShape, WRITES),
     )
     def post(self, request: Request, desk: str, camera: str, picture: int) -> Response:
         found = desk_or_404(request, desk)
         name = _picture(found, camera, picture).name
-        used = valid(SwitchSerializer(data=request.data))["used"]
+        used = valid(PictureSwitchSerializer(data=request.data))["used"]
         with told("used"):
             boards.switch(found, camera, name, used, caller(request))
             return Response(lens_answer(found, camera))

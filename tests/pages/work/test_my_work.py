@@ -27,7 +27,7 @@ pytestmark = pytest.mark.django_db
 @pytest.fixture
 def dataset() -> Dataset:
     dataset = make_work(frames=8)
-    into_campaign(dataset, platform="own_team", title="Walk one")
+    into_campaign(dataset, platform="own_team", title="Walk one", review_share=1.0)
     return dataset
 
 
