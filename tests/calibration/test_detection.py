@@ -92,6 +92,11 @@ def test_a_board_far_away_is_called_too_small() -> None:
     assert "small" in refused(picture_of(CHESS, straight(depth=3.5))).reason
 
 
+def test_a_picture_is_told_the_same_whatever_was_looked_at_before() -> None:
+    picture = picture_of(CHESS, straight(depth=3.5))
+    assert len({refused(picture).reason for _ in range(30)}) == 1
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
