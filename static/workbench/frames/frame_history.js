@@ -74,8 +74,10 @@ export class FrameHistory {
   }
 
   async open() {
+    let left = false; // whoever clicks elsewhere while the list is on its way keeps the keys
+    addEventListener("pointerdown", () => (left = true), { once: true, capture: true });
     await this._load();
-    this._list.querySelector("input")?.focus();
+    if (!left) this._list.querySelector("input")?.focus();
   }
 
   async _load() {
