@@ -23,7 +23,7 @@ import cv2
 import numpy as np
 
 from benchmarks.calibration_problem import pixels_off, synthesised, view_of
-from benchmarks.calibration_rows import Row
+from benchmarks.calibration_rows import Row, table
 from gtm_hit.calibration.adjustment.adjusting import Adjustment, adjust
 from gtm_hit.calibration.adjustment.holdout import leave_one_view_out
 from gtm_hit.calibration.adjustment.parameters import unpacked
@@ -197,9 +197,7 @@ def main() -> None:
     if options.solve:
         print(json.dumps(solve(options.solve, options.data)))
         return
-    for row in rows(options.data):
-        sign = {True: "met", False: "MISSED", None: ""}[row.met]
-        print(f"{row.name:80}{row.got:>34}  {row.bar:20}{sign}")
+    print(table(rows(options.data)))
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.calibration_rows import Row
+from benchmarks.calibration_rows import Row, table
 from gtm_hit.calibration.ghosts import expected_pixels
 from gtm_hit.calibration.ground_points import regular_grid
 from gtm_hit.calibration.lens_numbers import Lens, lens_of
@@ -171,10 +171,7 @@ def _solved(lens: Lens, pairs: Sequence[Pair]) -> Solved:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--data", type=Path, help="folder with wildtrack_ba")
-    for row in rows(parser.parse_args().data):
-        print(
-            f"{row.name:55} {row.got:26} {row.bar:20} {'' if row.met is None else 'yes' if row.met else 'NO'}"
-        )
+    print(table(rows(parser.parse_args().data)))
 
 
 if __name__ == "__main__":

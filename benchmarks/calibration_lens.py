@@ -15,7 +15,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from benchmarks.calibration_rows import Row
+from benchmarks.calibration_rows import Row, table
 from gtm_hit.calibration.boards import Board, BoardKind
 from gtm_hit.calibration.detection import find_board
 from gtm_hit.calibration.intrinsics import LensSolution, solve_lens
@@ -177,8 +177,7 @@ def verdict_row(name: str, solution: LensSolution, bar: str, met: bool | None) -
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, help="a folder with real pictures")
-    for row in rows(parser.parse_args().data):
-        print(f"{row.name:<45} {row.got:>18} {row.bar:>12}  {row.met}")
+    print(table(rows(parser.parse_args().data)))
 
 
 if __name__ == "__main__":

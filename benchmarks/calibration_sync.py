@@ -19,7 +19,7 @@ from pathlib import Path
 import django
 import numpy as np
 
-from benchmarks.calibration_rows import Row
+from benchmarks.calibration_rows import Row, table
 from gtm_hit.demo.backdrop import Place
 from gtm_hit.demo.film import Take, film, quick_painter, smaller, true_painter, walks_for
 from gtm_hit.demo.people import Cast
@@ -43,6 +43,7 @@ def rows(data: Path | None, rendered: bool = False) -> list[Row]:
 
 def _row(name: str, views: Sequence[int], seconds: float, rendered: bool) -> Row:
     os.environ.setdefault("DJANGO_SETTINGS_MODULE", "annotator.settings")
+    os.environ.setdefault("SECRET_KEY", "k" * 50)
     django.setup()
     from gtm_hit.ops.sync.guessing import Video, guess  # after the settings
 
@@ -85,12 +86,9 @@ def _write_cameras(folder: Path, takes: Sequence[Take]) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--data", type=Path)
     parser.add_argument("--rendered", action="store_true")
     options = parser.parse_args()
-    for row in rows(options.data, options.rendered):
-        verdict = {True: "met", False: "MISSED", None: ""}[row.met]
-        print(f"{row.name:64} {row.got:60} {row.bar:10} {verdict}")
+    print(table(rows(None, options.rendered)))
 
 
 if __name__ == "__main__":

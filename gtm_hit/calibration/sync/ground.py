@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from gtm_hit.calibration.sync.motion import Boxes, small_size
 from gtm_hit.calibration.sync.series import SyncError
-from gtm_hit.geometry.camera import Camera
-from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
+from gtm_hit.geometry.camera import Camera, Floats, back_project, project
 from gtm_hit.geometry.grid import Grid
 
-SOMEBODY = Cylinder(0.25, 1.7)  # metres
+TALL = 1.7  # metres
+SLIM = 0.3  # width of somebody relative to the height
+STEP_AHEAD = 0.3  # metres; what is lowest in a picture is the foot nearest to the camera
 AROUND = 25.0  # metres beyond the cameras that are looked at
 FINEST = 0.25  # metres between two cells
 MOST_CELLS = 6000
@@ -25,7 +26,8 @@ SMALLEST = 0.08  # of the picture's height; who is smaller tells little
 def ground_meters(cameras: Sequence[Camera]) -> list[Boxes]:
     """By camera, as its pictures were taken. Raises SyncError where no two cameras see the same ground."""
     grid = _grid(cameras)
-    seen = np.stack([_boxes(camera, grid) for camera in cameras])  # (cameras, cells, 4)
+    ground = grid.metres(np.arange(grid.count))
+    seen = np.stack([_boxes(camera, ground) for camera in cameras])  # (cameras, cells, 4)
     shared = np.flatnonzero((seen[..., 2] > seen[..., 0]).sum(axis=0) >= 2)
     if shared.size == 0:
         raise SyncError("no two cameras see the same ground")
@@ -44,14 +46,19 @@ def _grid(cameras: Sequence[Camera]) -> Grid:
     return Grid(math.ceil(width / step), math.ceil(length / step), step, float(low[0]), float(low[1]))
 
 
-def _boxes(camera: Camera, grid: Grid) -> NDArray[np.int64]:
+def _boxes(camera: Camera, ground: Floats) -> NDArray[np.int64]:
     """(cells, 4) in the small picture; zeros where nobody would be seen whole or large enough."""
-    boxes, visible = rectangles(camera, grid, SOMEBODY, FootRule.CENTRE, np.arange(grid.count))
-    tall = boxes[:, 3] - boxes[:, 1] >= SMALLEST * camera.height
-    inside = (boxes[:, 3] < camera.height) & (boxes[:, 0] >= 0) & (boxes[:, 2] < camera.width)
+    towards = camera.centre[:2] - ground
+    away = np.linalg.norm(towards, axis=1, keepdims=True)
+    standing = ground + towards / np.maximum(away, 1e-6) * STEP_AHEAD
+    feet, head = (project(camera, np.column_stack((standing, np.full(len(ground), z)))) for z in (0.0, TALL))
+    tall = feet[:, 1] - head[:, 1]
+    half = tall * SLIM / 2
+    with np.errstate(invalid="ignore"):
+        seen = np.linalg.norm(back_project(camera, feet) - standing, axis=1) < 0.05  # no lens folded back
+        seen &= (tall >= SMALLEST * camera.height) & (feet[:, 1] < camera.height)
+        seen &= (feet[:, 0] >= half) & (feet[:, 0] < camera.width - half)
+    boxes = np.column_stack((feet[:, 0] - half, head[:, 1], feet[:, 0] + half, feet[:, 1]))
     size = small_size(camera.width, camera.height)
-    small = np.floor(boxes * (size[0] / camera.width)).astype(np.int64)
-    small[:, 2:] += 1
-    small = np.clip(small, 0, [*size, *size])
-    small[~(visible & tall & inside)] = 0
-    return small
+    small = np.round(np.where(seen[:, None], boxes, 0) * (size[0] / camera.width)).astype(np.int64)
+    return np.clip(small, 0, [*size, *size])

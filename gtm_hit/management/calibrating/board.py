@@ -12,7 +12,7 @@ from django.core.management.base import CommandError
 from gtm_hit.calibration.boards import BoardError, describe
 from gtm_hit.calibration.pdf import board_pdf
 from gtm_hit.calibration.printing import board_svg, page
-from gtm_hit.formats.files import reason_of, replacing
+from gtm_hit.formats.files import reason_of, write_bytes
 from gtm_hit.management.calibrating.board_arguments import add_board_arguments, told_board
 
 HELP = "Write a board to print, in its true size."
@@ -34,8 +34,7 @@ def run(options: dict[str, Any], say: Callable[[str], object]) -> dict[str, Any]
     is_pdf = output.suffix.lower() == ".pdf"
     data = board_pdf(board) if is_pdf else board_svg(board).encode()
     try:
-        with replacing(output) as stream:
-            stream.write(data)
+        write_bytes(output, data)
     except OSError as error:
         raise CommandError(f"{output} cannot be written: {reason_of(error)}") from error
     sheet = page(board)

@@ -36,10 +36,13 @@ def cameras(desk: Desk) -> list[Camera]:
     rows = list(desk.cameras.order_by("index"))
     if not rows:
         raise DeskError("The desk has no cameras yet.")
-    made = [(row.name, poses.calibrated(row)) for row in rows]
-    if missing := [name for name, camera in made if camera is None]:
-        raise DeskError(f"Lens or place is missing of {', '.join(missing)}.")
-    return [camera for _name, camera in made if camera is not None]
+    made = [poses.calibrated(row) for row in rows]
+    unseen = [row.name for row in rows if row.lens is None]
+    unplaced = [row.name for row, camera in zip(rows, made, strict=True) if row.lens and camera is None]
+    if unseen or unplaced:
+        parts = ((unseen, "No lens yet"), (unplaced, "No place on the ground yet"))
+        raise DeskError(" ".join(f"{what}: {', '.join(names)}." for names, what in parts if names))
+    return [camera for camera in made if camera is not None]
 
 
 def cautions(desk: Desk) -> list[str]:

@@ -79,7 +79,7 @@ def test_what_is_compared_is_what_is_put_in_place_whatever_is_clicked_meanwhile(
 def test_a_camera_without_a_place_is_named_and_nothing_is_compared(desk: Desk) -> None:
     for name in seen(desk, "C2"):
         clicks.remove(desk, "C2", name)
-    with pytest.raises(DeskError, match=r"missing of C2\."):
+    with pytest.raises(DeskError, match=r"^No place on the ground yet: C2\.$"):
         placing.compare(desk)
     assert not Job.objects.exists()
 
