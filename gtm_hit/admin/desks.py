@@ -5,7 +5,17 @@ from __future__ import annotations
 from django.contrib import admin
 
 from gtm_hit.admin.look_only import LookOnlyAdmin
-from gtm_hit.models import BoardPicture, Click, Desk, DeskCamera, DeskEdit, DeskPicture, MeasuredPoint
+from gtm_hit.models import (
+    BoardPicture,
+    Click,
+    Desk,
+    DeskCamera,
+    DeskEdit,
+    DeskPicture,
+    KeptClick,
+    KeptPoint,
+    MeasuredPoint,
+)
 
 
 @admin.register(Desk)
@@ -42,6 +52,21 @@ class MeasuredPointAdmin(LookOnlyAdmin):
 class ClickAdmin(LookOnlyAdmin):
     list_display = ["camera", "point", "x", "y"]
     list_select_related = ["camera", "point"]
+    search_fields = ["point__name"]
+
+
+@admin.register(KeptPoint)
+class KeptPointAdmin(LookOnlyAdmin):
+    list_display = ["desk", "name", "use"]
+    list_select_related = ["desk"]
+    list_filter = ["use"]
+    search_fields = ["desk__slug", "name"]
+
+
+@admin.register(KeptClick)
+class KeptClickAdmin(LookOnlyAdmin):
+    list_display = ["point", "camera", "x", "y"]
+    list_select_related = ["point", "camera"]
     search_fields = ["point__name"]
 
 

@@ -7,7 +7,17 @@ from gtm_hit.models.calibration import Calibration
 from gtm_hit.models.campaign import Campaign, CampaignWorker
 from gtm_hit.models.campaign_link import CampaignLink
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
-from gtm_hit.models.desk import BoardPicture, Click, Desk, DeskCamera, DeskEdit, DeskPicture, MeasuredPoint
+from gtm_hit.models.desk import (
+    BoardPicture,
+    Click,
+    Desk,
+    DeskCamera,
+    DeskEdit,
+    DeskPicture,
+    KeptClick,
+    KeptPoint,
+    MeasuredPoint,
+)
 from gtm_hit.models.gold import GoldFrame, PlantedFault, Planting
 from gtm_hit.models.job import Job
 from gtm_hit.models.money import MoneyEntry, WorkClock
@@ -56,6 +66,8 @@ __all__ = [
     "HookEvent",
     "Image",
     "Job",
+    "KeptClick",
+    "KeptPoint",
     "Layer",
     "LayerFrame",
     "MeasuredPoint",

@@ -136,6 +136,43 @@ class Click(models.Model):
         return f"{self.point} in {self.camera}"
 
 
+class KeptPoint(models.Model):
+    """A thing that several cameras see at one instant, clicked by hand; where it is nobody measured."""
+
+    class Use(models.TextChoices):
+        CORRESPONDENCE = "correspondence", "adjusted with"
+        TEST = "test", "only tested with"
+
+    desk = models.ForeignKey(Desk, on_delete=models.CASCADE, related_name="kept_points")
+    name = models.CharField(max_length=80)
+    use = models.CharField(
+        max_length=14, choices=Use.choices, help_text="a point to test with takes part in no solve, ever"
+    )
+
+    class Meta:
+        ordering = ["desk", "pk"]
+        constraints = [models.UniqueConstraint(fields=["desk", "name"], name="kept_point_name_once")]
+
+    def __str__(self) -> str:
+        return self.name
+
+
+class KeptClick(models.Model):
+    """Where a kept point is seen by a camera, in its picture as taken."""
+
+    point = models.ForeignKey(KeptPoint, on_delete=models.CASCADE, related_name="clicks")
+    camera = models.ForeignKey(DeskCamera, on_delete=models.CASCADE, related_name="kept_clicks")
+    x = models.FloatField(help_text="pixels")
+    y = models.FloatField(help_text="pixels")
+
+    class Meta:
+        ordering = ["point", "camera__index"]
+        constraints = [models.UniqueConstraint(fields=["point", "camera"], name="kept_click_once")]
+
+    def __str__(self) -> str:
+        return f"{self.point} in {self.camera}"
+
+
 class DeskEdit(models.Model):
     """One step of the hand at a desk. Steps are only added; undoing one marks it.
 

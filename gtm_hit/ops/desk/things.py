@@ -6,10 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from gtm_hit.models import BoardPicture, Click, Desk, DeskCamera, MeasuredPoint
+from gtm_hit.models import BoardPicture, Click, Desk, DeskCamera, KeptClick, KeptPoint, MeasuredPoint
 from gtm_hit.ops.desk.errors import NotThere
 
 CLICK, POINT, LENS, PICTURE, BOARD_PICTURE = "click", "point", "lens", "picture", "board picture"
+KEPT_POINT, KEPT_CLICK = "kept point", "kept click"
 
 
 @dataclass(frozen=True)
@@ -119,10 +120,43 @@ def write_board_picture(desk: Desk, key: list[str], value: bool | None) -> None:
         raise NotThere(f"The camera {camera} has no picture {name}.")
 
 
+def read_kept_point(desk: Desk, key: list[str]) -> str | None:
+    """What [name] is used for."""
+    return desk.kept_points.filter(name=key[0]).values_list("use", flat=True).first()
+
+
+def write_kept_point(desk: Desk, key: list[str], value: str | None) -> None:
+    """Its clicks are things of their own: take them away first, so that undoing brings them back."""
+    if value is None:
+        desk.kept_points.filter(name=key[0]).delete()
+        return
+    KeptPoint.objects.update_or_create(desk=desk, name=key[0], defaults={"use": value})
+
+
+def read_kept_click(desk: Desk, key: list[str]) -> list[float] | None:
+    """x and y, pixels, of [point, camera]."""
+    point, camera = key
+    found = KeptClick.objects.filter(point__desk=desk, point__name=point, camera__name=camera).first()
+    return [found.x, found.y] if found else None
+
+
+def write_kept_click(desk: Desk, key: list[str], value: list[float] | None) -> None:
+    point, camera = desk.kept_points.filter(name=key[0]).first(), camera_of(desk, key[1])
+    if point is None:
+        raise NotThere(f"The desk has no kept point {key[0]}.")
+    if value is None:
+        KeptClick.objects.filter(point=point, camera=camera).delete()
+        return
+    x, y = value
+    KeptClick.objects.update_or_create(point=point, camera=camera, defaults={"x": x, "y": y})
+
+
 THINGS: dict[str, Thing] = {
     CLICK: Thing(read_click, write_click),
     POINT: Thing(read_point, write_point),
     LENS: Thing(read_lens, write_lens),
     PICTURE: Thing(read_picture, write_picture),
     BOARD_PICTURE: Thing(read_board_picture, write_board_picture),
+    KEPT_POINT: Thing(read_kept_point, write_kept_point),
+    KEPT_CLICK: Thing(read_kept_click, write_kept_click),
 }
