@@ -53,21 +53,12 @@ def make_layer(frames: int):  # type: ignore[no-untyped-def]
     import numpy as np
 
     from gtm_hit.formats.calibration.cameras_json import load_cameras
-    from gtm_hit.models import Annotation, Camera, Dataset, Frame, Layer, LayerFrame
+    from gtm_hit.models import Annotation, Dataset, Frame, Layer, LayerFrame
+    from gtm_hit.ops.datasets.rows import add_cameras
 
     dataset = Dataset.objects.create(slug="benchmark", name="Benchmark")
     cameras = Path(__file__).resolve().parent.parent / "fixtures" / "wildtrack_cameras.json"
-    for camera in load_cameras(cameras):
-        Camera.objects.create(
-            dataset=dataset,
-            index=camera.index,
-            name=camera.name,
-            width=camera.width,
-            height=camera.height,
-            matrix=camera.matrix.tolist(),
-            rvec=camera.rvec.tolist(),
-            tvec=camera.tvec.tolist(),
-        )
+    add_cameras(dataset, load_cameras(cameras))
     layer = Layer.objects.create(dataset=dataset, name="people", kind=Layer.Kind.GROUND_TRUTH)
     positions = np.random.default_rng(1).integers(0, dataset.grid.count, (frames, PEOPLE)).tolist()
     for first in range(0, frames, 1000):

@@ -31,20 +31,11 @@ def prepare(folder: str) -> None:
 
 def build() -> None:
     from gtm_hit.formats.calibration.cameras_json import load_cameras
-    from gtm_hit.models import Camera, Dataset, Frame, Layer, LayerFrame
+    from gtm_hit.models import Dataset, Frame, Layer, LayerFrame
+    from gtm_hit.ops.datasets.rows import add_cameras
 
     dataset = Dataset.objects.create(slug="long", name="Long")
-    for camera in load_cameras(Path("fixtures/wildtrack_cameras.json")):
-        Camera.objects.create(
-            dataset=dataset,
-            index=camera.index,
-            name=camera.name,
-            width=camera.width,
-            height=camera.height,
-            matrix=camera.matrix.tolist(),
-            rvec=camera.rvec.tolist(),
-            tvec=camera.tvec.tolist(),
-        )
+    add_cameras(dataset, load_cameras(Path("fixtures/wildtrack_cameras.json")))
     Frame.objects.bulk_create(
         (Frame(dataset=dataset, number=5 * index) for index in range(FRAMES)), batch_size=5000
     )

@@ -15,6 +15,7 @@ from gtm_hit.geometry.camera import Camera as CalibratedCamera
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
 from gtm_hit.geometry.grid import Grid
 from gtm_hit.models import Annotation, Assignment, Camera, Dataset, Frame, Image, Layer
+from gtm_hit.ops.datasets.rows import add_cameras
 from gtm_hit.ops.files import images
 from gtm_hit.ops.frames.saving import save_frame
 from gtm_hit.ops.work import assignments, batches, links, workers
@@ -94,18 +95,7 @@ def make_street(
 ) -> Street:
     """The dataset with its batches; pictures are made once per process and stored by content."""
     dataset = Dataset.objects.create(slug=slug, name=slug.title())
-    for camera in cameras(views):
-        Camera.objects.create(
-            dataset=dataset,
-            index=camera.index,
-            name=camera.name,
-            width=camera.width,
-            height=camera.height,
-            matrix=camera.matrix.tolist(),
-            rvec=camera.rvec.tolist(),
-            tvec=camera.tvec.tolist(),
-            distortion=camera.distortion.tolist(),
-        )
+    add_cameras(dataset, cameras(views))
     truth = walks(people, frames)
     rows = Frame.objects.bulk_create(
         Frame(dataset=dataset, number=FRAME_STEP * index) for index in range(frames)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from gtm_hit.geometry.camera import Camera
 from gtm_hit.models import Annotation, Dataset, Frame, Layer
-from gtm_hit.models import Camera as CameraRow
+from gtm_hit.ops.datasets.rows import add_cameras
 from gtm_hit.ops.exports import exporting
 from gtm_hit.ops.frames import saving
 from gtm_hit.ops.layers.findings import Kind
@@ -27,21 +25,6 @@ def make_square(**values: Any) -> Dataset:
     add_cameras(dataset, cameras())
     Frame.objects.bulk_create(Frame(dataset=dataset, number=number) for number in NUMBERS)
     return dataset
-
-
-def add_cameras(dataset: Dataset, found: Iterable[Camera]) -> None:
-    for camera in found:
-        CameraRow.objects.create(
-            dataset=dataset,
-            index=camera.index,
-            name=camera.name,
-            width=camera.width,
-            height=camera.height,
-            matrix=camera.matrix.tolist(),
-            rvec=camera.rvec.tolist(),
-            tvec=camera.tvec.tolist(),
-            distortion=camera.distortion.tolist(),
-        )
 
 
 def fill(layer: Layer, people: int = 12, **values: Any) -> None:

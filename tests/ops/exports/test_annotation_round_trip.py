@@ -21,9 +21,10 @@ from gtm_hit.formats.manifest import verify
 from gtm_hit.models import Dataset, Frame, Layer, LayerFrame
 from gtm_hit.ops.datasets import demo
 from gtm_hit.ops.datasets.importing import ImportFailed
+from gtm_hit.ops.datasets.rows import add_cameras
 from gtm_hit.ops.ground.coverage import table
 from tests.formats.pom_reader import read_pom
-from tests.ops.square_layer import add_cameras, content, export, fill, make_square, save, take_in
+from tests.ops.square_layer import content, export, fill, make_square, save, take_in
 from tests.work_scene import make_layer, row
 
 pytestmark = pytest.mark.django_db

@@ -11,7 +11,8 @@ from xml.etree import ElementTree
 import pytest
 
 from gtm_hit.metrics.annotations import Annotations
-from gtm_hit.models import Camera, Dataset, Layer
+from gtm_hit.models import Dataset, Layer
+from gtm_hit.ops.datasets.rows import add_cameras
 from gtm_hit.ops.quality.statistics.figures import FIGURES, figure
 from gtm_hit.ops.quality.statistics.measuring import ground_coverage, layer_statistics
 from gtm_hit.ops.quality.statistics.numbers import as_numbers, csv_header, csv_lines
@@ -29,18 +30,7 @@ def tables(tmp_path: Path, settings: Any) -> None:
 def wildtrack() -> Dataset:
     """The published grid and calibration."""
     dataset = Dataset.objects.create(slug="wildtrack", name="WILDTRACK")
-    for camera in cameras():
-        Camera.objects.create(
-            dataset=dataset,
-            index=camera.index,
-            name=camera.name,
-            width=camera.width,
-            height=camera.height,
-            matrix=camera.matrix.tolist(),
-            rvec=camera.rvec.tolist(),
-            tvec=camera.tvec.tolist(),
-            distortion=camera.distortion.tolist(),
-        )
+    add_cameras(dataset, cameras())
     return dataset
 
 
