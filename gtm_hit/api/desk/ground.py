@@ -18,6 +18,9 @@ from gtm_hit.api.desk.common import DeskFileParser, DeskView, desk_or_404, sent_
 from gtm_hit.ops.desk import clicks, edits, ground, pictures, points
 
 
+PAGES = "`ground`, `check`, or `lens CAMERA`"
+
+
 class GroundPointShape(serializers.Serializer[Any]):
     name = serializers.CharField()
     x = serializers.FloatField(help_text="metres")
@@ -86,7 +89,7 @@ class FrameChoiceSerializer(serializers.Serializer[Any]):
 
 
 class UndoSerializer(serializers.Serializer[Any]):
-    page = serializers.CharField(max_length=100, default=edits.GROUND, help_text="`ground`, or `lens CAMERA`")
+    page = serializers.CharField(max_length=100, default=edits.GROUND, help_text=PAGES)
 
 
 class Ground(DeskView):
