@@ -13,7 +13,6 @@ from rest_framework.response import Response
 
 from gtm_hit.api.common.refusals import valid
 from gtm_hit.api.common.staff import READS, WRITES, answers, caller
-from gtm_hit.api.datasets.importing import FiniteField
 from gtm_hit.api.desk.common import DeskFileParser, DeskView, desk_or_404, told
 from gtm_hit.api.desk.ground import PixelSerializer, StepsShape
 from gtm_hit.calibration.kept_points import SeenAt

@@ -17,7 +17,6 @@ from gtm_hit.api.datasets.importing import FiniteField
 from gtm_hit.api.desk.common import DeskFileParser, DeskView, desk_or_404, sent_file, told
 from gtm_hit.ops.desk import clicks, edits, ground, pictures, points
 
-
 PAGES = "`ground`, `check`, or `lens CAMERA`"
 
 

@@ -147,7 +147,7 @@ def _in_place(desk: Desk) -> dict[str, Camera]:
 
 
 def _plain(row: KeptPoint) -> dict[str, Any]:
-    clicks = {each.camera: [each.x, each.y] for each in kept.clicks_of(row)}
+    clicks = [asdict(each) for each in kept.clicks_of(row)]
     return {"name": row.name, "use": row.use, "clicks": clicks}
 
 

@@ -1,6 +1,6 @@
 """Points that several cameras see and nobody measured, kept with their clicks.
 
-Each change is one edit of the page Check. `use` alone decides whether a solve may have a point or never has it.
+Each change is one edit of the page Check. A point whose use is to test is given to no solve, ever.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ from django import forms
 from django.contrib import messages
 from django.http import HttpResponse
 from django.shortcuts import redirect, render
-from django.urls import path
+from django.urls import path, reverse
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_lazy
 from django.views.decorators.cache import never_cache
@@ -39,9 +39,13 @@ def desk_check(request: StaffRequest, desk: str) -> HttpResponse:
     around = frame(found, "check")
     context = {
         **around,
-        "check": {"api": around["api"], "check": checks.shown(found), "point": request.GET.get("point", "")},
+        "check": {
+            "api": around["api"],
+            "desk": reverse("desk", args=[found.slug]),
+            "check": checks.shown(found),
+            "point": request.GET.get("point", ""),
+        },
         "cameras": found.cameras.count(),
-        "kept": found.kept_points.count(),
         "kept_form": KeptForm(),
     }
     return render(request, "desk/check.html", context)
