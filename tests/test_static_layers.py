@@ -29,6 +29,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "review": {"base", "compare", "tables", "truth", "views"},
     "conflicts": {"base"},
     "calibration": {"base"},
+    "calibration/check": {"base", "calibration", "geometry"},
     "calibration/ground": {"base", "calibration", "geometry"},
     "calibration/lens": {"base", "calibration"},
     "site": {"base"},

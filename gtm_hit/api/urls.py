@@ -31,6 +31,7 @@ from gtm_hit.api.common.docs import DocsView
 from gtm_hit.api.common.missing import MissingView
 from gtm_hit.api.datasets import importing, listing, videos
 from gtm_hit.api.desk import boards, desks, lenses
+from gtm_hit.api.desk import checking as desk_checking
 from gtm_hit.api.desk import ground as desk_ground
 from gtm_hit.api.desk import placing as desk_placing
 from gtm_hit.api.quality import comparing, statistics
@@ -188,6 +189,7 @@ one_desk: list[URLPattern | URLResolver] = [
     path("", desks.OneDesk.as_view()),
     path("cameras.json", desk_placing.DeskCamerasJson.as_view()),
     path("calibrations.zip", desk_placing.DeskFolder.as_view()),
+    path("check/", gzip_page(desk_checking.Check.as_view())),
     path("compare/", desk_placing.CompareDesk.as_view()),
     path("cameras/", desks.DeskCameras.as_view()),
     path("cameras/<str:camera>/", desks.OneDeskCamera.as_view()),
@@ -204,6 +206,11 @@ one_desk: list[URLPattern | URLResolver] = [
     path("cameras/<str:camera>/lens/in-place/", lenses.DeskLensInPlace.as_view()),
     path("cameras/<str:camera>/picture/", desk_ground.GroundPicture.as_view()),
     path("ground/", gzip_page(desk_ground.Ground.as_view())),
+    path("kept.csv", desk_checking.KeptCsv.as_view()),
+    path("kept/", desk_checking.KeptPoints.as_view()),
+    path("kept/file/", desk_checking.KeptFile.as_view()),
+    path("kept/named/<str:point>/", desk_checking.OneKeptPoint.as_view()),
+    path("kept/named/<str:point>/clicks/<str:camera>/", desk_checking.KeptClickView.as_view()),
     path("points/file/", desk_ground.PointsFile.as_view()),
     path("points/grid/", desk_ground.PointsGrid.as_view()),
     path("points/named/<str:point>/", desk_ground.OnePoint.as_view()),

@@ -24,7 +24,7 @@ from gtm_hit.models import Dataset, Desk
 from gtm_hit.models.dataset import name_validator
 from gtm_hit.ops.access.desks import desks_of, may_make_desk
 from gtm_hit.ops.access.roles import Role
-from gtm_hit.ops.desk import desks, overview, pictures
+from gtm_hit.ops.desk import checks, desks, overview, pictures
 
 NOT_YOURS = gettext_lazy("You look after no such dataset; without one it takes a maintainer of all datasets.")
 
@@ -65,10 +65,11 @@ class CameraStepsShape(serializers.Serializer[Any]):
 
 class WholeDeskShape(DeskShape):
     cameras = CameraStepsShape(many=True)
+    check = DeskStepShape(help_text="what its test points tell")
     next_step = serializers.CharField(help_text="the one next step, in words")
 
     class Meta(DeskShape.Meta):
-        fields = [*DeskShape.Meta.fields, "cameras", "next_step"]
+        fields = [*DeskShape.Meta.fields, "cameras", "check", "next_step"]
 
 
 class NewDeskCameraSerializer(serializers.Serializer[Any]):
@@ -180,4 +181,10 @@ class DeskImage(ImageView):
 def _whole(desk: Desk) -> dict[str, Any]:
     found = overview.overview(desk)
     cameras = CameraStepsShape(found.cameras, many=True).data
-    return {**DeskShape(desk).data, "cameras": cameras, "next_step": found.next_step.words}
+    check = DeskStepShape(checks.step(desk)).data
+    return {
+        **DeskShape(desk).data,
+        "cameras": cameras,
+        "check": check,
+        "next_step": found.next_step.words,
+    }

@@ -17,6 +17,8 @@ from gtm_hit.api.datasets.importing import FiniteField
 from gtm_hit.api.desk.common import DeskFileParser, DeskView, desk_or_404, sent_file, told
 from gtm_hit.ops.desk import clicks, edits, ground, pictures, points
 
+PAGES = "`ground`, `check`, or `lens CAMERA`"
+
 
 class GroundPointShape(serializers.Serializer[Any]):
     name = serializers.CharField()
@@ -86,7 +88,7 @@ class FrameChoiceSerializer(serializers.Serializer[Any]):
 
 
 class UndoSerializer(serializers.Serializer[Any]):
-    page = serializers.CharField(max_length=100, default=edits.GROUND, help_text="`ground`, or `lens CAMERA`")
+    page = serializers.CharField(max_length=100, default=edits.GROUND, help_text=PAGES)
 
 
 class Ground(DeskView):

@@ -5,23 +5,25 @@
 
     [{"thing": "lamp", "camera": "C1", "x": 1411.0, "y": 146.0}, …]
 
-Pixels are those of the picture as taken.
+Pixels are those of the picture as taken. A fifth value, `use`, may say what the thing is kept for.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from gtm_hit.formats.annotations.delimited_text import real, records
+from gtm_hit.formats.annotations.delimited_text import real, records, short
 from gtm_hit.formats.files import read_source
 from gtm_hit.formats.problems import ProblemList, shown
 from gtm_hit.formats.strict_json import parse_json
 
 MOST_BYTES = 10_000_000
 COLUMNS = ["thing", "camera", "x", "y"]
+USE = "use"
+USES = ("correspondence", "test")  # to adjust with, or only to test with
 
 
 @dataclass(frozen=True)
@@ -30,13 +32,18 @@ class ThingClick:
     camera: str
     x: float
     y: float
+    use: str = ""  # one of USES; empty: not said
 
 
 def read_clicks(path: Path) -> list[ThingClick]:
     """FormatError with everything that is wrong, line by line."""
-    problems = ProblemList(path)
-    data = read_source(path, MOST_BYTES)
-    read = _of_json if path.suffix.lower() == ".json" else _of_csv
+    return parse_clicks(read_source(path, MOST_BYTES), path)
+
+
+def parse_clicks(data: bytes, name: Path | str) -> list[ThingClick]:
+    """What a file of this name holds. FormatError with everything that is wrong, line by line."""
+    problems = ProblemList(name)
+    read = _of_json if str(name).lower().endswith(".json") else _of_csv
     clicks: list[ThingClick] = []
     first: dict[tuple[str, str], str] = {}
     for place, click in read(data, problems):
@@ -52,15 +59,26 @@ def read_clicks(path: Path) -> list[ThingClick]:
     return clicks
 
 
+def write_clicks(clicks: Iterable[ThingClick]) -> bytes:
+    """CSV, with what each thing is kept for."""
+    lines = [",".join([*COLUMNS, USE])]
+    lines += [f"{one.thing},{one.camera},{short(one.x)},{short(one.y)},{one.use}" for one in clicks]
+    return ("\n".join(lines) + "\n").encode()
+
+
 def _of_csv(data: bytes, problems: ProblemList) -> Iterator[tuple[str, ThingClick]]:
     for number, words in records(data):
-        if words == COLUMNS:
+        if words[: len(COLUMNS)] == COLUMNS:
             continue
-        if len(words) != len(COLUMNS) or not (words[0] and words[1]):
+        thing, camera, *rest = [*words, ""][: len(COLUMNS) + 1]
+        use = rest[-1]
+        if len(words) not in {len(COLUMNS), len(COLUMNS) + 1} or not (thing and camera):
             problems.add(f"line {number}", f"is no line of the form {','.join(COLUMNS)}")
             continue
+        if use not in {"", *USES}:
+            problems.add(f"line {number}", f"use is {shown(use)} instead of {' or '.join(USES)}")
         x, y = real(words[2], "x", number, problems), real(words[3], "y", number, problems)
-        yield f"line {number}", ThingClick(words[0], words[1], x, y)
+        yield f"line {number}", ThingClick(thing, camera, x, y, use)
 
 
 def _of_json(data: bytes, problems: ProblemList) -> Iterator[tuple[str, ThingClick]]:
@@ -71,7 +89,8 @@ def _of_json(data: bytes, problems: ProblemList) -> Iterator[tuple[str, ThingCli
     for index, entry in enumerate(entries):
         if _is_click(entry):
             x, y = float(entry["x"]), float(entry["y"])
-            yield f"entry {index}", ThingClick(str(entry["thing"]), str(entry["camera"]), x, y)
+            use = str(entry.get(USE, ""))
+            yield f"entry {index}", ThingClick(str(entry["thing"]), str(entry["camera"]), x, y, use)
         else:
             problems.add(f"entry {index}", f"is no object with {', '.join(COLUMNS)}: {shown(entry)}")
 
@@ -80,4 +99,6 @@ def _is_click(entry: Any) -> bool:
     if not isinstance(entry, dict) or not all(name in entry for name in COLUMNS):
         return False
     numbers = all(isinstance(entry[n], int | float) and not isinstance(entry[n], bool) for n in ("x", "y"))
+    if entry.get(USE, "") not in {"", *USES}:
+        return False
     return numbers and all(isinstance(entry[name], str | int) for name in ("thing", "camera"))

@@ -13,7 +13,7 @@ from gtm_hit.formats.files import read_source, write_bytes
 from gtm_hit.formats.problems import FormatError
 from gtm_hit.management.lookups import dataset_named
 from gtm_hit.models import Desk
-from gtm_hit.ops.desk import desks, edits, ground, lenses, overview, pictures, placing
+from gtm_hit.ops.desk import checks, desks, edits, ground, kept, lenses, overview, pictures, placing
 from gtm_hit.ops.desk.errors import DeskError
 
 MOST_BYTES = 50_000_000
@@ -39,9 +39,19 @@ class Command(BaseCommand):
         parser.add_argument("--picture", metavar=("CAMERA", "FILE"), help="picture of the ground", **two)
         parser.add_argument("--clicks", metavar=("CAMERA", "FILE"), help="clicks, JSON", **two)
         parser.add_argument(
-            "--undo", metavar="PAGE", help="take the latest step back: of `ground`, or of `lens CAMERA`"
+            "--kept", type=Path, metavar="FILE", help="keep its points, CSV of thing,camera,x,y[,use] or JSON"
+        )
+        parser.add_argument(
+            "--use",
+            choices=kept.Use.values,
+            default=kept.Use.TEST.value,
+            help="of --kept, where the file says none (%(default)s)",
+        )
+        parser.add_argument(
+            "--undo", metavar="PAGE", help="take the latest step back: of `ground`, `check` or `lens CAMERA`"
         )
         parser.add_argument("--redo", metavar="PAGE", help="do it again")
+        parser.add_argument("--kept-out", type=Path, metavar="FILE", help="write the kept points, CSV")
         parser.add_argument("--cameras-json", type=Path, metavar="FILE", help="write the cameras, metres")
         parser.add_argument("--zip", type=Path, metavar="FILE", help="write WILDTRACK's folder, centimetres")
         parser.add_argument("--remove", action="store_true", help="remove it with everything on it")
@@ -67,10 +77,14 @@ class Command(BaseCommand):
             pictures.put(found, camera, read(Path(file)))
         for camera, file in options["clicks"]:
             ground.put_pairs(found, camera, read(Path(file)), Path(file).name, options["unit"])
+        if options["kept"]:
+            kept.put_file(found, read(options["kept"]), options["kept"].name, options["use"])
         if options["undo"]:
             edits.undo(found, options["undo"])
         if options["redo"]:
             edits.redo(found, options["redo"])
+        if options["kept_out"]:
+            write_bytes(options["kept_out"], kept.as_csv(found))
         if options["cameras_json"]:
             write_bytes(options["cameras_json"], placing.cameras_json(found))
         if options["zip"]:
@@ -94,6 +108,8 @@ class Command(BaseCommand):
         for each in found.cameras:
             self.stdout.write(f"  {each.name:8} lens   {each.lens.verdict.value:11} {each.lens.words}")
             self.stdout.write(f"  {'':8} ground {each.ground.verdict.value:11} {each.ground.words}")
+        check = checks.step(desk)
+        self.stdout.write(f"  {'check':15} {check.verdict.value:11} {check.words}")
 
 
 def facts(desk: Desk, found: overview.Overview) -> dict[str, Any]:
@@ -108,12 +124,15 @@ def facts(desk: Desk, found: overview.Overview) -> dict[str, Any]:
         for each in found.cameras
     ]
     dataset = desk.dataset.slug if desk.dataset else None
+    checked = checks.whole(desk)
     return {
         "desk": desk.slug,
         "dataset": dataset,
         "points": found.points,
         "next_step": found.next_step.words,
         "cameras": cameras,
+        "kept": checked["kept"],
+        "summaries": checked["summaries"],
     }
 
 

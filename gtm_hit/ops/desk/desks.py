@@ -13,7 +13,7 @@ from gtm_hit.geometry.camera import CameraModel
 from gtm_hit.models import Camera, Dataset, Desk, DeskCamera, DeskPicture
 from gtm_hit.models.dataset import name_validator
 from gtm_hit.ops.desk.errors import DeskError
-from gtm_hit.ops.desk.things import camera_of
+from gtm_hit.ops.desk.things import camera_named, camera_of
 
 MOST_CAMERAS = 100
 IN_PLACE = "the dataset's calibration in place"
@@ -72,7 +72,8 @@ def remove_camera(desk: Desk, name: str) -> None:
         camera = camera_of(desk, name)
         if desk.dataset_id is not None:
             raise DeskError("The cameras are the dataset's: none can be left out.")
-        touched = any(key[0] == name for edit in desk.edits.all() for _kind, key, *_rest in edit.changes)
+        changes = (change for edit in desk.edits.all() for change in edit.changes)
+        touched = any(camera_named(kind, key) == name for kind, key, *_rest in changes)
         if touched or camera.board_pictures.exists():
             raise DeskError(f"Work has been done for {name}; it stays.")
         camera.delete()

@@ -27,6 +27,13 @@ def camera_of(desk: Desk, name: str) -> DeskCamera:
     return found
 
 
+def camera_named(kind: str, key: list[str]) -> str:
+    """The camera a thing is about; empty for a point, which is about none."""
+    if kind in {POINT, KEPT_POINT}:
+        return ""
+    return key[1] if kind == KEPT_CLICK else key[0]
+
+
 def point_of(desk: Desk, name: str) -> MeasuredPoint:
     """Raises NotThere."""
     found = desk.points.filter(name=name).first()

@@ -17,7 +17,7 @@ from django.views.decorators.http import require_http_methods, require_POST, req
 from gtm_hit.models import Dataset
 from gtm_hit.ops.access.desks import desks_of
 from gtm_hit.ops.access.roles import Role, Somebody, datasets_of, may_everywhere
-from gtm_hit.ops.desk import desks, overview
+from gtm_hit.ops.desk import checks, desks, overview
 from gtm_hit.ops.desk.errors import DeskError
 from gtm_hit.pages.common.access import StaffRequest, needs
 from gtm_hit.pages.desk.common import desk_or_404, frame, tried
@@ -90,6 +90,7 @@ def desk(request: StaffRequest, desk: str) -> HttpResponse:
     context = {
         **frame(found, "desk"),
         "found": overview.overview(found),
+        "check": checks.step(found),
         "edits": found.edits.select_related("author").order_by("-number")[:10],
     }
     return render(request, "desk/overview.html", context)

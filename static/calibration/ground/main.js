@@ -1,9 +1,9 @@
 import { element, pageJson, required, setText } from "../../base/dom.js";
 import { paintSoon } from "../../base/repaint.js";
+import { DeskPage, holdUntilSaved } from "../desk_page.js";
+import { listenToButtons, listenToKeys } from "../keys.js";
+import { Magnifier } from "../magnifier.js";
 import { Picture } from "../picture.js";
-import { Saver } from "../saver.js";
-import { Server } from "../server.js";
-import { Magnifier } from "./magnifier.js";
 import { marks } from "./marks.js";
 import { legend, Panel } from "./panel.js";
 import { Store } from "./store.js";
@@ -11,11 +11,11 @@ import { Store } from "./store.js";
 /** @typedef {import("../picture.js").XY} XY */
 
 const page = required(document, "[data-ground]", HTMLElement);
-const part = (/** @type {string} */ name) => required(page, `[data-${name}]`, HTMLElement);
 const given = pageJson("ground");
-const server = new Server(given.api, required(page, "[name=csrfmiddlewaretoken]", HTMLInputElement).value);
-const saver = new Saver(server);
-const store = new Store(given.ground, saver);
+const desk = new DeskPage(page, given.api, "ground", "ground/");
+const { server } = desk;
+const part = (/** @type {string} */ name) => desk.part(name);
+const store = new Store(given.ground, desk.saver);
 const picture = new Picture("The ground as this camera sees it");
 const magnifier = new Magnifier();
 const panel = new Panel(part("panel"), store);
@@ -35,14 +35,7 @@ function paint() {
   magnifier.at(view.hover ?? store.place);
   panel.draw();
   legend(part("legend"), view.grid);
-  for (const [name, what] of [
-    ["undo", ground.undo],
-    ["redo", ground.redo],
-  ]) {
-    const button = required(page, `[data-do=${name}]`, HTMLButtonElement);
-    button.disabled = !what;
-    button.title = what ? `${name === "undo" ? "Undo" : "Redo"}: ${what}` : "";
-  }
+  desk.showSteps(ground);
   cameras();
 }
 
@@ -70,34 +63,12 @@ function showCamera() {
   for (const word of page.querySelectorAll("[data-camera-name]")) setText(word, camera?.name ?? "");
 }
 
-/** @param {string} text */
-function tell(text) {
-  part("problem").hidden = !text;
-  setText(part("problem"), text);
-}
-
-function tellSaved() {
-  setText(
-    part("saved"),
-    saver.idle
-      ? "Everything is saved"
-      : saver.stuck
-        ? "Not saved yet: the server does not answer; trying again"
-        : "Saving…",
-  );
-}
-
 /** @param {"undo"|"redo"} what */
 async function step(what) {
-  if (!saver.idle) return;
-  try {
-    await server.ask("POST", `${what}/`, { page: "ground" });
-    store.replace(await server.ask("GET", "ground/"));
-    showCamera();
-    tell("");
-  } catch (error) {
-    tell(error instanceof Error ? error.message : String(error));
-  }
+  const whole = await desk.step(what);
+  if (!whole) return;
+  store.replace(whole);
+  showCamera();
 }
 
 /** @param {number} index */
@@ -105,6 +76,11 @@ function lookThrough(index) {
   store.selectCamera(index);
   showCamera();
   picture.fit();
+}
+
+function confirmByKey() {
+  store.confirm();
+  view.hover = null;
 }
 
 function closer() {
@@ -127,7 +103,7 @@ const actions = {
   closer,
 };
 /** @type {{[key: string]: string}} */
-const KEYS = {
+const names = {
   Enter: "confirm",
   Delete: "remove",
   Backspace: "remove",
@@ -137,40 +113,22 @@ const KEYS = {
   f: "fit",
   z: "closer",
 };
-/** @type {{[key: string]: number[]}} */
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/** @param {KeyboardEvent} event @returns {boolean} whether the key meant something */
-function press(event) {
-  const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-  if (event.ctrlKey || event.metaKey) {
-    const wanted = key === "z" ? (event.shiftKey ? "redo" : "undo") : key === "y" ? "redo" : "";
-    if (wanted) actions[wanted]();
-    return Boolean(wanted);
-  }
-  if (ARROWS[key]) {
-    const far = event.shiftKey ? 5 : 0.25;
-    const [dx, dy] = ARROWS[key];
-    view.hover = null; // the magnifier shows what is nudged
-    store.nudge(far * dx, far * dy);
-    return true;
-  }
-  const camera = Number(key);
-  if (camera >= 1 && camera <= store.ground.cameras.length) lookThrough(camera - 1);
-  else if (KEYS[key]) actions[KEYS[key]]();
-  else return false;
-  if (KEYS[key] === "confirm") view.hover = null;
+/** The magnifier shows what is nudged. @param {number} dx @param {number} dy */
+function nudge(dx, dy) {
+  view.hover = null;
+  store.nudge(dx, dy);
+}
+
+/** @param {number} index */
+function choose(index) {
+  if (!store.ground.cameras[index]) return false;
+  lookThrough(index);
   return true;
 }
 
-document.addEventListener("keydown", (event) => {
-  const target = event.target instanceof Element ? event.target : null;
-  if (event.altKey || target?.closest("input, select, textarea, dialog")) return;
-  if (event.key === "Enter" && target?.closest("a, button, summary")) return;
-  if (press(event)) event.preventDefault();
-});
-for (const button of page.querySelectorAll("[data-do]"))
-  if (button instanceof HTMLElement) button.addEventListener("click", () => actions[button.dataset.do ?? ""]?.());
+listenToKeys({ actions: { ...actions, confirm: confirmByKey }, names, nudge, choose });
+listenToButtons(page, actions);
 
 store.ground.cameras.forEach((camera, index) => {
   const image = camera.light ? element("img", { src: server.picture(camera.light), alt: "", loading: "lazy" }) : null;
@@ -185,19 +143,11 @@ picture.on("hover", (place) => {
 picture.on("view", () => paintSoon(painter));
 store.on("changed", () => paintSoon(painter));
 store.on("moved", () => paintSoon(painter));
-saver.on("state", tellSaved);
-saver.on("answer", () => tell(""));
-saver.on("refused", (text) => {
-  tell(text);
-  paintSoon(painter);
-});
-addEventListener("beforeunload", (event) => {
-  if (!saver.idle) event.preventDefault();
-});
+desk.saver.on("refused", () => paintSoon(painter));
+holdUntilSaved(desk.saver);
 new ResizeObserver(() => paintSoon(painter)).observe(picture.element);
 
 const asked = store.ground.cameras.findIndex(({ name }) => name === given.camera);
 if (asked > 0) lookThrough(asked);
 showCamera();
-tellSaved();
 paintSoon(painter);

@@ -1,8 +1,8 @@
-import { svg } from "../../base/svg.js";
+import { svg } from "../base/svg.js";
 
 const ACROSS = 40; // pixels of the picture that are seen
 
-/** @typedef {import("../picture.js").XY} XY */
+/** @typedef {import("./picture.js").XY} XY */
 
 /** A few pixels around a place, large, with a cross hair in the middle. */
 export class Magnifier {
