@@ -30,6 +30,11 @@ export class Saver extends Emitter {
     return !this._busy && this._waiting.length === 0;
   }
 
+  /** How many are not answered yet. */
+  get pending() {
+    return this._waiting.length;
+  }
+
   /** What waits under a key, the newest. @param {string} key */
   waiting(key) {
     return this._waiting.findLast((save) => save.key === key);

@@ -13,6 +13,7 @@ STATIC = REPOSITORY / "static"
 STARTING = {
     *("workbench/main.js", "workbench/start.js", "workbench/comments/start.js"),
     *("compare/main.js", "review/main.js", "conflicts/main.js", "calibration/ground/main.js"),
+    "calibration/sync/main.js",
 }
 SCRIPTS = {
     f"site/{path.name}" for path in (STATIC / "site").glob("*.js")
