@@ -17,7 +17,7 @@ export class Events {
       maxLength: 80,
     });
     this._name.addEventListener("change", () => store.renameEvent(this._name.value.trim()));
-    this._hint = element("span", { className: "muted small" });
+    this._hint = element("span", { className: "hint muted small" });
     /** @type {Map<string, HTMLButtonElement>} */
     this._buttons = new Map();
     const button = (/** @type {string} */ name, /** @type {string} */ key, /** @type {string} */ word) => {
@@ -68,9 +68,7 @@ export class Events {
     if (document.activeElement !== this._name) this._name.value = store.event?.name ?? "";
     setText(this._word("mark"), `It happens here in ${store.clock.camera}`);
     this._enable("unmark", store.event?.marks[store.clock.file] !== undefined);
-    const { reference, event } = store;
-    const both = event && event.marks[reference.file] !== undefined && Object.keys(event.marks).length > 1;
-    this._enable("set", Boolean(both));
+    this._enable("set", Object.keys(store.event?.marks ?? {}).length > 1);
     this._enable("drift", store.drifts.size > 0);
     setText(this._hint, hint(store));
   }
@@ -97,5 +95,5 @@ function hint(store) {
   });
   if (told.length) return `Drift against ${reference.camera}: ${told.join(", ")}`;
   if (Object.keys(event.marks).length < 2) return "Choose another video and mark the same event there.";
-  return "A second event, far from this one, tells the drift.";
+  return `Drift: mark a second event, far from this one, here and in ${reference.camera}.`;
 }

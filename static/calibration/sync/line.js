@@ -142,11 +142,10 @@ function put(field, value) {
 
 /** @param {Store} store @param {Clock} clock */
 function differs(store, clock) {
-  const { event, reference } = store;
+  const { event, anchor } = store;
   if (!event || event.marks[clock.file] === undefined) return event ? "–" : "";
-  if (clock === reference) return "marked: the others are told from here";
-  const later = apart(event, clock, reference);
-  if (later === null) return `marked; mark it in ${reference.camera} too`;
+  if (clock === anchor) return "told from here";
+  const later = apart(event, clock, anchor) ?? 0;
   return `${signed(later)} · ${inPictures(later, store.video(clock).interval)}`;
 }
 

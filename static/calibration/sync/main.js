@@ -13,7 +13,7 @@ import { Player, RATE } from "./player.js";
 import { Revised } from "./revised.js";
 import { Store } from "./store.js";
 import { Tiles } from "./tiles.js";
-import { clockTime, rate } from "./words.js";
+import { clockTime } from "./words.js";
 
 const FAR = 5; // seconds
 const page = required(document, "[data-sync]", HTMLElement);
@@ -42,29 +42,23 @@ function paint() {
   setText(part("play-word"), player.playing ? "Stop" : "Play");
   setText(part("large-word"), tiles.large ? "All videos" : "Only two, large");
   setText(part("shown"), shown());
-  setText(part("overlap"), overlapWords());
   for (const name of /** @type {const} */ (["undo", "redo"]))
     required(page, `[data-do=${name}]`, HTMLButtonElement).disabled = !store.draft[name];
 }
 
 function shown() {
   if (player.waiting) return "Waiting for the server's pictures; all videos wait together.";
-  if (!player.playing) return `Every picture is shown as it is stored: ${rates()}.`;
+  if (!player.playing) return overlapWords();
   const late = player.late > 0.5 ? `; waited ${player.late.toFixed(1)} s for the server so far` : "";
   return `Playing ${RATE} pictures a second of each video${late}.`;
-}
-
-function rates() {
-  return [...new Set(store.used.map((clock) => rate(store.video(clock).interval)))].join(", ");
 }
 
 function overlapWords() {
   const { from, until, first, last } = store.shared;
   const count = store.used.length;
   if (until <= from) return `No instant is in all ${count} videos: ${last} begins after ${first} is over.`;
-  const length = `${(until - from).toFixed(1)} s`;
-  const told = `All ${count} videos see ${clockTime(from)} to ${clockTime(until)}: ${length}.`;
-  return from < 0 && until > 0 ? `${told} What lies before time 0 is not imported.` : told;
+  const told = `In all ${count} videos: ${clockTime(from)} to ${clockTime(until)}, ${(until - from).toFixed(1)} s.`;
+  return from < -0.05 ? `${told} What lies before 0 is not imported.` : told;
 }
 
 /** @param {string} text */

@@ -68,6 +68,13 @@ export class Store extends Emitter {
     return this.draft.events[this.eventIndex];
   }
 
+  /** What the others' marks of the event are told from: the reference, else the first video that has a mark. */
+  get anchor() {
+    const { event, reference } = this;
+    if (!event || event.marks[reference.file] !== undefined) return reference;
+    return this.clocks.find(({ file }) => event.marks[file] !== undefined) ?? reference;
+  }
+
   get used() {
     const used = this.clocks.filter((clock) => clock.used);
     return used.length ? used : this.clocks;
@@ -193,8 +200,8 @@ export class Store extends Emitter {
 
   /** All videos in which the event is marked are put so that it is at one shared time. */
   setByEvent() {
-    const { event, reference } = this;
-    if (event) this._change({ clocks: this.clocks.map((clock) => setBy(event, clock, reference)) });
+    const { event, anchor } = this;
+    if (event) this._change({ clocks: this.clocks.map((clock) => setBy(event, clock, anchor)) });
   }
 
   /** What the events say about drift, for each video that has two; by file. */

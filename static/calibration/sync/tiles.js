@@ -1,7 +1,7 @@
 import { element, required, setText } from "../../base/dom.js";
 import { extent, pictureNumber, videoTime } from "./clocks.js";
 import { widthFor } from "./pictures.js";
-import { clockTime } from "./words.js";
+import { clockTime, rate } from "./words.js";
 
 /**
  * @typedef {import("./store.js").Store} Store
@@ -88,12 +88,13 @@ export class Tiles {
     const seen = this.seen.get(clock.file);
     tile.classList.toggle("beyond", beyond);
     tile.classList.toggle("late", !found && !beyond);
-    tile.dataset.shown = found && !playing ? String(pictureNumber(video, found.strip.times[0])) : "";
+    tile.dataset.picture = found && !playing ? String(pictureNumber(video, found.strip.times[0])) : "";
     tile.setAttribute("aria-current", String(clock === store.clock));
     tile.classList.toggle("reference", clock === store.reference);
     setText(required(tile, "b", HTMLElement), `${store.clocks.indexOf(clock) + 1}  ${clock.camera}`);
     const problem = this._pictures.problems.get(store.number(clock));
-    const told = seen === undefined ? "…" : `${clockTime(seen)} · picture ${pictureNumber(video, seen)}`;
+    const told =
+      seen === undefined ? "…" : `${clockTime(seen)} · picture ${pictureNumber(video, seen)} · ${rate(video.interval)}`;
     const where = store.time < from ? "not begun yet" : "over";
     setText(required(tile, ".at", HTMLElement), beyond ? where : problem && !found ? problem : told);
   }
