@@ -28,7 +28,10 @@ class SyncPictureQuery(serializers.Serializer[Any]):
         required=False, min_value=-LARGEST, max_value=LARGEST, help_text="milliseconds of the video"
     )
     frame = serializers.IntegerField(
-        required=False, min_value=0, max_value=LARGEST, help_text="instead of `at`: number of the picture, from 0"
+        required=False,
+        min_value=0,
+        max_value=LARGEST,
+        help_text="instead of `at`: the picture, from 0",
     )
     width = serializers.ChoiceField(choices=pictures.WIDTHS, default=960, help_text="at most, pixels")
 

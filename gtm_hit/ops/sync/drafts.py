@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -18,9 +17,7 @@ from gtm_hit.models import VideoSync, VideoSyncState
 from gtm_hit.ops.datasets.videos.video import FASTEST, VideoError, VideoReader, opened
 from gtm_hit.ops.files import sources
 from gtm_hit.ops.sync.guessing import SyncRefused
-from gtm_hit.ops.sync.state import Clock, State, check, state_of
-
-_SPACE = re.compile(r"[\s=]+")
+from gtm_hit.ops.sync.state import Clock, State, camera_name, check, state_of
 
 
 class StaleDraft(SyncRefused):
@@ -59,7 +56,9 @@ def save(pk: int, revision: int, state: State) -> VideoSync:
     with _changing(pk, revision) as draft:
         files = [each["file"] for each in draft.facts]
         check(state, files)
-        _add(draft, replace(state, clocks=tuple(sorted(state.clocks, key=lambda each: files.index(each.file)))))
+        _add(
+            draft, replace(state, clocks=tuple(sorted(state.clocks, key=lambda each: files.index(each.file))))
+        )
     return draft
 
 
@@ -133,7 +132,7 @@ def _with_files(state: State, files: list[str]) -> State:
 
 
 def _first_clock(file: str) -> Clock:
-    return Clock(file, _SPACE.sub("-", Path(file).stem))
+    return Clock(file, camera_name(file))
 
 
 def _facts(source: sources.Source, path: Path) -> dict[str, Any]:

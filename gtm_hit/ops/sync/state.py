@@ -7,6 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Collection
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 from gtm_hit.ops.datasets.videos.options import MOST_DRIFT
@@ -14,6 +15,7 @@ from gtm_hit.ops.sync.guessing import SyncRefused
 
 MOST_SECONDS = 1_000_000.0
 MOST_EVENTS = 200
+_SEPARATORS = re.compile(r"[\s=]+")
 _NAME = re.compile(r"[^=\s]+")
 
 
@@ -48,6 +50,11 @@ class State:
         return asdict(self)
 
 
+def camera_name(file: str) -> str:
+    """A camera's name out of its file's, without what separates the parts of a line."""
+    return _SEPARATORS.sub("-", Path(file).stem)
+
+
 def state_of(content: dict[str, Any]) -> State:
     """Of what `as_json` made."""
     return State(
@@ -70,7 +77,9 @@ def check(state: State, files: Collection[str]) -> None:
 def _check_clocks(clocks: tuple[Clock, ...]) -> None:
     for clock in clocks:
         if not _NAME.fullmatch(clock.camera):
-            raise SyncRefused(f"{clock.file}: a camera's name has neither spaces nor = in it, and is not empty.")
+            raise SyncRefused(
+                f"{clock.file}: a camera's name has neither spaces nor = in it, and is not empty."
+            )
         if not abs(clock.offset) <= MOST_SECONDS:
             raise SyncRefused(f"{clock.file}: no video has an offset of {clock.offset} s.")
         if not abs(clock.drift) <= MOST_DRIFT:
