@@ -59,8 +59,8 @@ class SyncPicture(PictureView):
         responses={(200, "image/jpeg"): OpenApiTypes.BINARY, **ASKS},
     )
     def get(self, request: Request, pk: int, video: int) -> HttpResponse:
-        wanted, draft = asked(request, SyncPictureQuery), draft_or_404(pk)
-        path = _path_or_404(draft, video)
+        draft = draft_or_404(pk)
+        path, wanted = _path_or_404(draft, video), asked(request, SyncPictureQuery)
         facts = draft.facts[video]
         if ("at" in wanted) == ("frame" in wanted):
             raise invalid("at", "Say either at or frame.")
@@ -81,8 +81,8 @@ class SyncStrip(PictureView):
         responses={(200, "image/jpeg"): OpenApiTypes.BINARY, **ASKS},
     )
     def get(self, request: Request, pk: int, video: int) -> HttpResponse:
-        wanted, draft = asked(request, SyncStripQuery), draft_or_404(pk)
-        path = _path_or_404(draft, video)
+        draft = draft_or_404(pk)
+        path, wanted = _path_or_404(draft, video), asked(request, SyncStripQuery)
         with told("at"):
             found = pictures.strip(path, draft.facts[video], **wanted)
         return _jpeg(found.jpeg, found.times)

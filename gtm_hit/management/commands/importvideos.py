@@ -45,8 +45,8 @@ class Command(SceneCommand):
             "--offsets",
             type=Path,
             metavar="FILE",
-            help="instead: such texts, one a line, as `calibrate sync` and `videosync` write them; files are seen "
-            "from where FILE lies",
+            help="instead: such texts, one a line, as `calibrate sync` and `videosync` write them; files are "
+            "seen from where FILE lies",
         )
         parser.add_argument("--name", default="", help="the dataset's name in words (default: SLUG)")
         parser.add_argument(

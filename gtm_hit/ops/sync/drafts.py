@@ -56,9 +56,8 @@ def save(pk: int, revision: int, state: State) -> VideoSync:
     with _changing(pk, revision) as draft:
         files = [each["file"] for each in draft.facts]
         check(state, files)
-        _add(
-            draft, replace(state, clocks=tuple(sorted(state.clocks, key=lambda each: files.index(each.file))))
-        )
+        clocks = sorted(state.clocks, key=lambda each: files.index(each.file))
+        _add(draft, replace(state, clocks=tuple(clocks)))
     return draft
 
 

@@ -76,7 +76,7 @@ def parse_source(text: str) -> VideoSource:
 
 
 def parse_sources(text: str, folder: Path) -> list[VideoSource]:
-    """One video a line, files seen from `folder`; empty lines and what follows a # at the beginning are no videos.
+    """One video a line, files seen from `folder`; empty lines and those that begin with # are none.
 
     Raises SourceError with every line that names none.
     """
