@@ -32,6 +32,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "calibration/check": {"base", "calibration", "geometry"},
     "calibration/ground": {"base", "calibration", "geometry"},
     "calibration/lens": {"base", "calibration"},
+    "calibration/sync": {"base", "calibration"},
     "site": {"base"},
 }
 ABOVE = "workbench"  # builds the page from all of its rooms

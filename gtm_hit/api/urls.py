@@ -35,6 +35,8 @@ from gtm_hit.api.desk import checking as desk_checking
 from gtm_hit.api.desk import ground as desk_ground
 from gtm_hit.api.desk import placing as desk_placing
 from gtm_hit.api.quality import comparing, statistics
+from gtm_hit.api.sync import drafts as syncs
+from gtm_hit.api.sync import pictures as sync_pictures
 from gtm_hit.api.workbench import decision, frames, tutorial
 from gtm_hit.api.workbench.grids import GridView
 from gtm_hit.api.workbench.images import ImageView
@@ -218,6 +220,16 @@ one_desk: list[URLPattern | URLResolver] = [
     path("redo/", desk_ground.Redo.as_view()),
     re_path(r"^pictures/(?P<digest>[0-9a-f]{64})\.jpg$", desks.DeskImage.as_view(), name="desk-picture"),
 ]
+one_sync: list[URLPattern | URLResolver] = [
+    path("", syncs.OneSync.as_view()),
+    path("guess/", syncs.GuessSync.as_view()),
+    path("guess/take/", syncs.TakeSyncGuess.as_view()),
+    path("offsets.txt", syncs.SyncOffsets.as_view()),
+    path("undo/", syncs.UndoSync.as_view()),
+    path("redo/", syncs.RedoSync.as_view()),
+    path("videos/<int:video>/picture.jpg", sync_pictures.SyncPicture.as_view()),
+    path("videos/<int:video>/strip.jpg", sync_pictures.SyncStrip.as_view()),
+]
 scripts: list[URLPattern | URLResolver] = [
     path("calibration-board.<slug:kind>", boards.BoardSheet.as_view()),
     path("calibration-desks/", desks.Desks.as_view()),
@@ -228,6 +240,8 @@ scripts: list[URLPattern | URLResolver] = [
     path("uploads/", importing.Uploads.as_view()),
     path("imports/", importing.Imports.as_view()),
     path("video-imports/", videos.VideoImports.as_view()),
+    path("video-syncs/", syncs.Syncs.as_view()),
+    path("video-syncs/<int:pk>/", include(one_sync)),
     path("evaluations/", comparing.TextFiles.as_view()),
     path("roles/", roles.Roles.as_view()),
     path("roles/take/", roles.TakeRole.as_view()),

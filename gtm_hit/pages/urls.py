@@ -17,6 +17,7 @@ from gtm_hit.pages import (
     releases,
     scores,
     stitching,
+    sync,
 )
 from gtm_hit.pages.campaigns import links as campaign_links
 from gtm_hit.pages.campaigns import listing as campaigns
@@ -54,6 +55,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *text_files.urlpatterns,
     *jobs.urlpatterns,
     *dataset_imports.urlpatterns,
+    *sync.urlpatterns,
     *calibration.urlpatterns,
     *desks.urlpatterns,
     *desk_ground.urlpatterns,

@@ -104,6 +104,8 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
         "calibrations/<int:pk>": f"calibrations/{change.pk}",
         "jobs/<int:pk>": f"jobs/{exporting.start(layer).pk}",
         "tokens/<int:pk>": "tokens/1",
+        "video-syncs/<int:pk>": "video-syncs/1",
+        "videos/<int:video>": "videos/0",
         "versions/<int:number>": "versions/1",
         "releases/<int:number>/<str:name>": "releases/1/README.md",
         "releases/<int:number>": "releases/1",

@@ -10,11 +10,10 @@ from tests.conftest import REPOSITORY
 pytestmark = pytest.mark.browser
 
 STATIC = REPOSITORY / "static"
-STARTING = {
-    *("workbench/main.js", "workbench/start.js", "workbench/comments/start.js"),
-    *("compare/main.js", "review/main.js", "conflicts/main.js", "calibration/ground/main.js"),
-    "calibration/check/main.js",
-}
+STARTING = {path.relative_to(STATIC).as_posix() for path in STATIC.rglob("main.js")} | {
+    "workbench/start.js",
+    "workbench/comments/start.js",
+}  # what pages begin with
 SCRIPTS = {
     f"site/{path.name}" for path in (STATIC / "site").glob("*.js")
 }  # of ordinary pages, run as they are

@@ -23,6 +23,8 @@ from gtm_hit.ops.files.full_disk import disk_full
 from gtm_hit.ops.frames.rules import InvalidFrame
 from gtm_hit.ops.frames.saving import SaveIdUsed, StaleSave, UnknownRevision
 from gtm_hit.ops.review.refusals import NotAllowed, ReviewRefused, WrongState
+from gtm_hit.ops.sync.drafts import StaleDraft
+from gtm_hit.ops.sync.whole import whole
 from gtm_hit.ops.tutorial import lesson
 from gtm_hit.ops.work import assignments
 
@@ -62,6 +64,8 @@ def domain_answer(error: Exception) -> Response | None:
             return answer(400, "invalid", message, [asdict(problem) for problem in error.problems])
         case SaveIdUsed():
             return answer(409, "save_id_used", _("This save id belongs to another save."))
+        case StaleDraft():
+            return answer(412, "stale", str(error), {"current": whole(error.draft).as_json()})
         case UnknownRevision():
             return answer(404, "not_found", _("The frame never had this revision."))
         case assignments.ReadOnly():

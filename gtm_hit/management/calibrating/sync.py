@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import shlex
 from argparse import ArgumentParser, ArgumentTypeError
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +11,9 @@ from typing import Any
 
 from django.core.management.base import CommandError
 
+from gtm_hit.formats.files import write_bytes
 from gtm_hit.ops.sync.guessing import SECONDS, Guess, SyncRefused, Video, guess
+from gtm_hit.ops.sync.state import camera_name
 
 HELP = (
     "Guess the offsets of videos: by WAV files of the same names beside them, else by who walks where on the "
@@ -25,6 +29,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--seconds", type=float, default=SECONDS, help=f"of every video to look at ({SECONDS:.0f})"
     )
+    parser.add_argument(
+        "--output", type=Path, metavar="FILE", help="write what was found, for `importvideos --offsets FILE`"
+    )
 
 
 def run(options: dict[str, Any], say: Callable[[str], object]) -> dict[str, Any]:
@@ -38,6 +45,8 @@ def run(options: dict[str, Any], say: Callable[[str], object]) -> dict[str, Any]
         found = guess(videos, calibration and calibration.absolute(), options["seconds"])
     except SyncRefused as error:
         raise CommandError(str(error)) from error
+    if options["output"]:
+        _write(options["output"], found, videos)
     _tell(found, videos, say)
     return {**found.as_json(), "importvideos": option_line(found, videos)}
 
@@ -45,10 +54,20 @@ def run(options: dict[str, Any], say: Callable[[str], object]) -> dict[str, Any]
 def option_line(found: Guess, videos: list[Video]) -> str:
     """What follows the calibrations in a call of `importvideos`."""
     return " ".join(
-        f"{video.camera}={video.path}@{place.offset:.3f}"
+        shlex.quote(f"{video.camera}={video.path}@{place.offset:.3f}")
         for video, place in zip(videos, found.places, strict=True)
         if place.offset is not None
     )
+
+
+def _write(file: Path, found: Guess, videos: list[Video]) -> None:
+    """One video a line; what was not found stands there with a word, to be set by hand."""
+    folder, lines = file.absolute().parent, [f"# {found.told}"]
+    for video, place in zip(videos, found.places, strict=True):
+        path = Path(os.path.relpath(video.path.absolute(), folder))
+        said = f"{video.camera} = {path} @ "
+        lines.append(f"# not found: {said}" if place.offset is None else f"{said}{place.offset:.3f}")
+    write_bytes(file, "".join(f"{line}\n" for line in lines).encode())
 
 
 def _tell(found: Guess, videos: list[Video], say: Callable[[str], object]) -> None:
@@ -62,7 +81,7 @@ def _tell(found: Guess, videos: list[Video], say: Callable[[str], object]) -> No
 def _video(text: str) -> Video:
     name, equals, path = text.partition("=")
     if not equals:
-        name, path = Path(text).stem, text
+        name, path = camera_name(text), text
     if not name or not path:
         raise ArgumentTypeError(f"{text!r} does not read CAMERA=VIDEO")
     return Video(name, Path(path))

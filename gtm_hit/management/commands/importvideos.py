@@ -9,6 +9,8 @@ from typing import Any
 
 from django.core.management.base import CommandError, CommandParser
 
+from gtm_hit.formats.files import read_source
+from gtm_hit.formats.problems import FormatError
 from gtm_hit.management.commands import importdataset
 from gtm_hit.management.progress import ProgressLine
 from gtm_hit.management.scene_command import SceneCommand
@@ -20,7 +22,10 @@ from gtm_hit.ops.datasets.videos.options import (
     VideoOptions,
     VideoSource,
     parse_source,
+    parse_sources,
 )
+
+MOST_BYTES = 1_000_000
 
 
 class Command(SceneCommand):
@@ -34,7 +39,14 @@ class Command(SceneCommand):
         parser.add_argument("slug", help="the dataset's name in addresses, for example plaza")
         parser.add_argument("calibrations", type=Path, help="folder of calibrations, or a cameras.json")
         parser.add_argument(
-            "videos", nargs="+", type=source, metavar="CAMERA=FILE@SECONDS", help="video and its offset"
+            "videos", nargs="*", type=source, metavar="CAMERA=FILE@SECONDS", help="video and its offset"
+        )
+        parser.add_argument(
+            "--offsets",
+            type=Path,
+            metavar="FILE",
+            help="instead: such texts, one a line, as `calibrate sync` and `videosync` write them; files are "
+            "seen from where FILE lies",
         )
         parser.add_argument("--name", default="", help="the dataset's name in words (default: SLUG)")
         parser.add_argument(
@@ -79,6 +91,19 @@ def source(text: str) -> VideoSource:
         raise argparse.ArgumentTypeError(str(error)) from error
 
 
+def named_videos(options: dict[str, Any]) -> tuple[VideoSource, ...]:
+    """From the command line or from a file."""
+    file: Path | None = options["offsets"]
+    if (file is None) == (not options["videos"]):
+        raise CommandError("name the videos, or give --offsets FILE")
+    if file is None:
+        return tuple(options["videos"])
+    try:
+        return tuple(parse_sources(read_source(file, MOST_BYTES).decode(), file.absolute().parent))
+    except (SourceError, FormatError, UnicodeDecodeError) as error:
+        raise CommandError(f"{file}: {error}") from error
+
+
 def read_options(options: dict[str, Any]) -> VideoOptions:
     values = importdataset.given_values({**options, "frame_rate": options["rate"]})
     calibrations = options["calibrations"].absolute()
@@ -93,4 +118,4 @@ def read_options(options: dict[str, Any]) -> VideoOptions:
         undistort=not options["as_taken"],
         alpha=options["alpha"],
     )
-    return VideoOptions(dataset, tuple(options["videos"]), options["start"], options["until"])
+    return VideoOptions(dataset, named_videos(options), options["start"], options["until"])

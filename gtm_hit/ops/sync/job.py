@@ -9,7 +9,7 @@ from django.contrib.auth.models import User
 from gtm_hit.models import Job, VideoSync
 from gtm_hit.ops.files import sources
 from gtm_hit.ops.jobs import queue
-from gtm_hit.ops.jobs.progress import steps
+from gtm_hit.ops.jobs.progress import Progress, steps
 from gtm_hit.ops.sync import drafts
 from gtm_hit.ops.sync.guessing import SyncRefused, Video, guess
 
@@ -28,18 +28,24 @@ def under_way(draft: VideoSync) -> Job | None:
 
 def run(mine: queue.Run) -> dict[str, Any]:
     draft = VideoSync.objects.filter(pk=mine.job.parameters["sync"]).first()
-    source = sources.source(mine.job.parameters["source"])
-    if draft is None or source is None:
+    if draft is None:
         raise queue.JobError(f"{mine.job.parameters['source']} is no longer there.")
+    try:
+        return {"sync": draft.pk, **make_guess(draft, steps(mine))}
+    except SyncRefused as error:
+        raise queue.JobError(str(error)) from error
+
+
+def make_guess(draft: VideoSync, progress: Progress) -> dict[str, Any]:
+    """Raises SyncRefused, and keeps the guess there was."""
+    source = sources.source(draft.source)
+    if source is None:
+        raise SyncRefused(f"{draft.source} is no longer there.")
     clocks = [clock for clock in drafts.current(draft).clocks if clock.used]
     videos = [Video(clock.camera, source.path / clock.file) for clock in clocks]
     calibrations = source.path / "calibrations"
-    try:
-        found = guess(videos, calibrations if calibrations.exists() else None, progress=steps(mine))
-    except SyncRefused as error:
-        raise queue.JobError(str(error)) from error
-    result = found.as_json()
+    result = guess(videos, calibrations if calibrations.exists() else None, progress=progress).as_json()
     for place, clock in zip(result["places"], clocks, strict=True):
         place["file"] = clock.file
     VideoSync.objects.filter(pk=draft.pk).update(guess=result)
-    return {"sync": draft.pk, **result}
+    return result

@@ -1,4 +1,4 @@
-"""Single pictures of videos for browsers that cannot play them, and for who wants to be exact.
+"""Pictures of videos for the browser: no browser decodes every video, and none seeks to a frame for certain.
 
 They are decoded by what decodes an import's pictures. What follows a picture is wanted next, so some are
 decoded together and kept on the disk for a day.
@@ -17,6 +17,7 @@ from threading import Event
 from typing import Any
 
 import cv2
+import numpy as np
 from django.conf import settings
 
 from gtm_hit.formats.files import write_bytes
@@ -40,19 +41,40 @@ class Picture:
 
 def picture(video: Path, facts: dict[str, Any], at: int, width: int) -> Picture:
     """The one nearest to `at` milliseconds, the last one where the video ends before. Raises VideoError."""
-    interval = facts["interval"]
-    at = max(min(at, round(1000 * (facts["duration"] - interval))), 0)
+    interval, start = facts["interval"], facts["start"]
+    at = max(min(at, round(1000 * (start + facts["duration"] - interval))), round(1000 * start))
     folder = _folder(video, facts["version"])
     if (kept := _kept(folder, at, width)) is not None:
         return kept
-    number = round(at / 1000 / interval)
-    following = [round(1000 * (number + more) * interval) for more in range(1, TOGETHER)]
+    number = round((at / 1000 - start) / interval)
+    following = [round(1000 * (start + (number + more) * interval)) for more in range(1, TOGETHER)]
     wanted = [at, *(each for each in following if each > at)]
     for each, taken in zip(wanted, _taken(video, interval, [each / 1000 for each in wanted]), strict=False):
         _keep(folder, each, width, taken)
     if (kept := _kept(folder, at, width)) is None:
         raise VideoError(f"no picture at {at / 1000:.3f} s can be decoded")
     return kept
+
+
+@dataclass(frozen=True)
+class Strip:
+    """Pictures one below the other, and the time of each."""
+
+    times: tuple[float, ...]
+    jpeg: bytes
+
+
+def strip(video: Path, facts: dict[str, Any], at: int, step: int, count: int, width: int) -> Strip:
+    """`count` pictures, `step` milliseconds apart, fewer where the video ends. Raises VideoError.
+
+    Read forwards once: playing asks for a second or two at a time.
+    """
+    wanted = [(at + step * index) / 1000 for index in range(count)]
+    taken = list(_taken(video, facts["interval"], wanted))
+    if not taken:
+        raise VideoError(f"no picture at {at / 1000:.3f} s can be decoded")
+    stacked = np.vstack([_smaller(each.pixels, width) for each in taken])
+    return Strip(tuple(each.time for each in taken), _jpeg(stacked))
 
 
 def remove_old(now: datetime) -> None:
@@ -79,14 +101,22 @@ def _kept(folder: Path, at: int, width: int) -> Picture | None:
 
 
 def _keep(folder: Path, at: int, width: int, taken: Taken) -> None:
-    pixels: Any = taken.pixels
+    content = _TIME.pack(taken.time) + _jpeg(_smaller(taken.pixels, width))
+    write_bytes(folder / f"{at}-{width}", content)
+
+
+def _smaller(pixels: Any, width: int) -> Any:
     height, full = pixels.shape[:2]
-    if full > width:
-        pixels = cv2.resize(pixels, (width, round(height * width / full)), interpolation=cv2.INTER_AREA)
+    if full <= width:
+        return pixels
+    return cv2.resize(pixels, (width, round(height * width / full)), interpolation=cv2.INTER_AREA)
+
+
+def _jpeg(pixels: Any) -> bytes:
     written, data = cv2.imencode(".jpg", pixels, [cv2.IMWRITE_JPEG_QUALITY, QUALITY])
     if not written:
-        raise VideoError(f"the picture at {taken.time:.3f} s cannot be encoded")
-    write_bytes(folder / f"{at}-{width}", _TIME.pack(taken.time) + data.tobytes())
+        raise VideoError("the picture cannot be encoded")
+    return data.tobytes()
 
 
 def _taken(video: Path, interval: float, times: list[float]) -> Iterator[Taken]:

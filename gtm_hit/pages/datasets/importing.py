@@ -9,11 +9,13 @@ from django.utils.translation import gettext as _
 from django.views.decorators.http import require_http_methods
 
 from gtm_hit.formats.problems import FormatError
-from gtm_hit.models import Job
+from gtm_hit.models import Job, VideoSync
 from gtm_hit.ops.access.jobs import jobs_of
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.datasets import job as import_jobs
 from gtm_hit.ops.files import sources
+from gtm_hit.ops.sync import drafts
+from gtm_hit.ops.sync.state import source_lines
 from gtm_hit.pages.common.access import StaffRequest, needs
 from gtm_hit.pages.common.uploads import takes_uploads
 from gtm_hit.pages.datasets.forms import DatasetForm, VideosForm
@@ -45,9 +47,7 @@ def new_dataset(request: StaffRequest) -> HttpResponse:
 @require_http_methods(["GET", "HEAD", "POST"])
 @needs(Role.MAINTAINER, everywhere=True)
 def new_videos(request: StaffRequest) -> HttpResponse:
-    folder = sources.source(request.GET.get("source", ""))
-    initial = {"source": folder.key, "videos": _suggested(folder)} if folder else {}
-    form = VideosForm(request.POST or None, initial=initial)
+    form = VideosForm(request.POST or None, initial=_first_values(request))
     if (
         request.method == "POST"
         and form.is_valid()
@@ -84,6 +84,15 @@ def _chosen(form: DatasetForm) -> sources.Source | None:
         for problem in error.problems:
             form.add_error("archive", ": ".join(part for part in (problem.place, problem.reason) if part))
         return None
+
+
+def _first_values(request: StaffRequest) -> dict[str, str]:
+    """Of a folder's videos, or of clocks that were put together."""
+    number = request.GET.get("sync", "")
+    if number.isdecimal() and len(number) < 10 and (draft := VideoSync.objects.filter(pk=number).first()):
+        return {"source": draft.source, "videos": "\n".join(source_lines(drafts.current(draft)))}
+    folder = sources.source(request.GET.get("source", ""))
+    return {"source": folder.key, "videos": _suggested(folder)} if folder else {}
 
 
 def _suggested(folder: sources.Source) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 
@@ -11,32 +10,17 @@ import numpy as np
 import pytest
 from django.core.management import CommandError, call_command
 
-from gtm_hit.demo.film import Take, film, quick_painter, smaller, walks_for
-from gtm_hit.demo.scene import read_scene
-from gtm_hit.formats.calibration.cameras_json import load_cameras, save_cameras
 from gtm_hit.ops.datasets.videos.options import parse_source
 from gtm_hit.ops.sync.guessing import SyncRefused, Video, guess
 from tests.calibration.sync.test_sound import make_sound
-from tests.conftest import REPOSITORY
+from tests.filmed_videos import STARTS, make_filmed
 from tests.video_files import make_video
-
-STARTS, RATES, VIEWS = (2.0, 1.111, 2.468), (25.0, 30000 / 1001, 60000 / 1001), (0, 3, 6)
-SECONDS = 14.0
 
 
 @pytest.fixture(scope="module")
 def filmed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Three views of the same people from different instants on, 25, 29.97 and 59.94 pictures a second."""
     folder = tmp_path_factory.mktemp("filmed")
-    scene = replace(read_scene(), seed=7)
-    known = load_cameras(REPOSITORY / "fixtures" / "wildtrack_cameras.json")
-    cameras = [smaller(known[view], 384) for view in VIEWS]
-    walks = walks_for(scene, SECONDS + max(STARTS))
-    for camera, start, rate in zip(cameras, STARTS, RATES, strict=True):
-        take = Take(camera, folder / f"{camera.name}.mp4", start, rate, SECONDS)
-        film(take, walks, quick_painter(scene, camera))
-    save_cameras(folder / "cameras.json", cameras)
-    return folder
+    return make_filmed(folder, folder)
 
 
 def videos_in(folder: Path) -> list[Video]:

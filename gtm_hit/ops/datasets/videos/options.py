@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from gtm_hit.ops.datasets.options import ImportOptions
@@ -73,6 +73,26 @@ def parse_source(text: str) -> VideoSource:
     if abs(drift) > MOST_DRIFT:
         raise SourceError(f"{text!r}: a drift of {drift:.0f} ppm is no clock's")
     return VideoSource(match["camera"], Path(match["path"]), offset, drift)
+
+
+def parse_sources(text: str, folder: Path) -> list[VideoSource]:
+    """One video a line, files seen from `folder`; empty lines and those that begin with # are none.
+
+    Raises SourceError with every line that names none.
+    """
+    found, reasons = [], []
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        try:
+            source = parse_source(line)
+        except SourceError as error:
+            reasons.append(f"line {number}: {error}")
+        else:
+            found.append(replace(source, path=folder / source.path))
+    if reasons or not found:
+        raise SourceError("; ".join(reasons) or "no video is named")
+    return found
 
 
 def _number(text: str, written: str, kind: str) -> float:

@@ -1,0 +1,1 @@
+"""Putting the clocks of videos together."""
