@@ -18,7 +18,7 @@ from gtm_hit.ops.calibration.replacing import ReplacementError
 from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.jobs.progress import percents
 
-SHARES = {replacing.RECTANGLES: (0, 60), replacing.COMPARING: (60, 100)}
+SHARES = {replacing.COMPARING: (0, 100)}
 
 
 def start(

@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import islice
-from pathlib import Path
 from typing import Any
 
-from django.conf import settings
 from django.contrib.auth.models import User
 from django.db import transaction
 from django.db.models import Count, Max
 
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import Cylinder
-from gtm_hit.geometry.table import RectangleTable, table_digest
+from gtm_hit.geometry.table import table_digest
 from gtm_hit.models import Annotation, Calibration, Dataset, Image, Layer, Save
 from gtm_hit.ops.calibration import comparison as compared
 from gtm_hit.ops.calibration import versions
 from gtm_hit.ops.calibration.comparison import Comparison, Moved, Person
 from gtm_hit.ops.errors import OperationError
+from gtm_hit.ops.ground.coverage import table
 from gtm_hit.ops.jobs.progress import Progress
 
 PEOPLE_TOGETHER = 20_000
-RECTANGLES, COMPARING = "computing rectangles", "comparing boxes"
+COMPARING = "comparing boxes"
 LATTICE = 7  # positions along each side that stand in for people where nobody is annotated
 
 
@@ -32,14 +32,14 @@ class ReplacementError(OperationError, ValueError):
 
 
 def preview(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> dict[str, Any]:
-    """What putting `cameras` in place would do to every box, as JSON values. Builds the new table.
+    """What putting `cameras` in place would do to every box, as JSON values.
 
-    Positions of annotations stay as they are; nothing is written.
+    Positions of annotations stay as they are; nothing is written, no rectangle table either.
     """
     state = state_of(dataset)
     comparison = Comparison(
-        _calibration(dataset, dataset.calibrated_cameras(), progress),
-        _calibration(dataset, cameras, progress),
+        compared.Calibration(dataset.calibrated_cameras(), dataset.grid, dataset.rule),
+        compared.Calibration(cameras, dataset.grid, dataset.rule),
     )
     total = Annotation.objects.filter(layer__dataset=dataset).count()
     people = _people(dataset)
@@ -50,7 +50,6 @@ def preview(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> 
         progress(COMPARING, min(comparison.people, total), total)
     return {
         "state": state,
-        "table_digest": comparison.after.table.digest,  # keeps the table until this is confirmed
         "annotations": comparison.people,
         "cameras": comparison.cameras(),
         "worst": [_worst(moved) for moved in comparison.worst],
@@ -83,6 +82,8 @@ def replace_calibration(
             row.rvec, row.tvec = camera.rvec.tolist(), camera.tvec.tolist()
             row.model = camera.model.value
             row.save(update_fields=["matrix", "distortion", "rvec", "tvec", "model"])
+        # The next one who opens the dataset need not wait for it; should it fail, he makes it.
+        transaction.on_commit(partial(table, dataset, cameras=cameras), robust=True)
         return versions.put_in_place(dataset, cameras, source, user, report)
 
 
@@ -92,18 +93,6 @@ def state_of(dataset: Dataset) -> list[Any]:
     saves = Save.objects.filter(layer_frame__layer__dataset=dataset).aggregate(Count("pk"), Max("pk"))
     people = Annotation.objects.filter(layer__dataset=dataset).aggregate(Count("pk"), Max("pk"))
     return [digest, *saves.values(), *people.values()]
-
-
-def _calibration(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> compared.Calibration:
-    table = RectangleTable.build(
-        Path(settings.TABLES_ROOT),
-        cameras,
-        dataset.grid,
-        dataset.cylinder,
-        dataset.rule,
-        lambda done, total: progress(RECTANGLES, done, total),
-    )
-    return compared.Calibration(cameras, table, dataset.cylinder, dataset.rule)
 
 
 def _people(dataset: Dataset, **chosen: Any) -> Iterator[Person]:
