@@ -80,7 +80,7 @@ class Command(BaseCommand):
         try:
             if number is not None:
                 found = versions.version(dataset, number)
-                return versions.cameras_in(found), found.source
+                return versions.cameras_in(found), versions.gone_back(number)
             return read_replacement(dataset, path.absolute(), options["tvec_unit"]), path.name
         except versions.UnknownVersion as error:
             raise CommandError(str(error)) from error

@@ -46,7 +46,7 @@ def start(
 def start_version(dataset: Dataset, number: int, user: User | None = None) -> Job:
     """Compare with a calibration the dataset had before. Raises UnknownVersion."""
     found = versions.version(dataset, number)
-    return start(dataset, versions.cameras_in(found), user, found.source, number)
+    return start(dataset, versions.cameras_in(found), user, versions.gone_back(number), number)
 
 
 def run(mine: queue.Run) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from django.contrib.auth.models import User
 from django.db import transaction
-from django.db.models import Count, Max
+from django.db.models import Count, F, Max
 
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import Cylinder
@@ -42,7 +42,7 @@ def preview(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> 
         compared.Calibration(cameras, dataset.grid, dataset.rule),
     )
     total = Annotation.objects.filter(layer__dataset=dataset).count()
-    people = _people(dataset)
+    people = people_of(dataset)
     progress(COMPARING, 0, total)
     while block := list(islice(people, PEOPLE_TOGETHER)):
         comparison.add(block)
@@ -95,9 +95,12 @@ def state_of(dataset: Dataset) -> list[Any]:
     return [digest, *saves.values(), *people.values()]
 
 
-def _people(dataset: Dataset, **chosen: Any) -> Iterator[Person]:
+def people_of(dataset: Dataset, every: int = 1, **chosen: Any) -> Iterator[Person]:
+    """Annotations of all layers, in the order they were made; with `every` that part of them only."""
     usual = dataset.cylinder
     rows = Annotation.objects.filter(layer__dataset=dataset, **chosen).order_by("pk")
+    if every > 1:
+        rows = rows.annotate(rest=F("pk") % every).filter(rest=0)
     fields = ("layer__name", "frame__number", "person", "position", "radius", "height")
     for layer, frame, person, position, radius, height in rows.values_list(*fields).iterator(PEOPLE_TOGETHER):
         size = usual if radius is height is None else Cylinder(radius or usual.radius, height or usual.height)
@@ -134,7 +137,7 @@ def _picture(dataset: Dataset, comparison: Comparison) -> dict[str, Any]:
     else:
         frame = dataset.frames.get(pk=fullest["frame"])
         layer = Layer.objects.get(pk=fullest["layer"]).name
-        people = list(_people(dataset, layer=fullest["layer"], frame=frame))
+        people = list(people_of(dataset, layer=fullest["layer"], frame=frame))
     images = Image.objects.filter(frame=frame).order_by("camera__index")
     return {
         "frame": frame.number if frame else None,
