@@ -6,7 +6,7 @@ from typing import Any
 
 from django.db.models import QuerySet
 from django.http import Http404
-from drf_spectacular.utils import OpenApiParameter, extend_schema
+from drf_spectacular.utils import OpenApiParameter, extend_schema, extend_schema_field
 from rest_framework import serializers
 from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
@@ -48,24 +48,24 @@ class PlacementSerializer(serializers.ModelSerializer[CalibrationPlacement]):
         fields = ["created_at", "created_by", "source", "report"]
 
 
+class VersionUsageSerializer(serializers.Serializer[Any]):
+    saves = serializers.IntegerField()
+    layers = serializers.IntegerField(help_text="that these saves are of")
+    releases = serializers.ListField(child=serializers.IntegerField(), help_text="their numbers")
+
+
 class WholeVersionSerializer(VersionSerializer):
     cameras = serializers.DictField(help_text="the content of a cameras.json")
     report = serializers.DictField(help_text=REPORT)
     placements = PlacementSerializer(many=True, help_text="each time it was put in place again")
-    saves = serializers.IntegerField(help_text="made under it")
-    layers = serializers.IntegerField(help_text="that these saves are of")
-    releases = serializers.ListField(child=serializers.IntegerField(), help_text="made under it, by number")
+    made_under_it = serializers.SerializerMethodField()
 
     class Meta(VersionSerializer.Meta):
-        counts = ["saves", "layers", "releases"]
-        fields = [*VersionSerializer.Meta.fields, "cameras", "report", "placements", *counts]
+        fields = [*VersionSerializer.Meta.fields, "cameras", "report", "placements", "made_under_it"]
 
-    def to_representation(self, instance: Calibration) -> dict[str, Any]:
-        found = usage(instance)
-        for name in self.Meta.counts:
-            setattr(instance, name, getattr(found, name))
-        told: dict[str, Any] = super().to_representation(instance)
-        return told
+    @extend_schema_field(VersionUsageSerializer)
+    def get_made_under_it(self, row: Calibration) -> dict[str, Any]:
+        return VersionUsageSerializer(usage(row)).data
 
 
 class SideSerializer(serializers.Serializer[Any]):
@@ -99,13 +99,11 @@ class CameraDifferenceSerializer(serializers.Serializer[Any]):
         allow_null=True, help_text="what the change of distortion alone moves, at the worst place"
     )
     ground_cm = GroundShiftSerializer(help_text="where a pixel lies on the ground")
-    boxes = MovedInCameraSerializer(help_text="without its name")
+    boxes = MovedInCameraSerializer()
 
 
 class ShiftMapSerializer(serializers.Serializer[Any]):
-    origin = serializers.ListField(
-        child=serializers.FloatField(), help_text="X and Y of the first cell, metres"
-    )
+    origin = serializers.ListField(child=serializers.FloatField(), help_text="of the ground: X and Y, metres")
     cell_metres = serializers.FloatField()
     columns = serializers.IntegerField(help_text="cells along X")
     rows = serializers.IntegerField(help_text="cells along Y")
