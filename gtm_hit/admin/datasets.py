@@ -6,7 +6,7 @@ from django.contrib import admin
 from django.http import HttpRequest
 
 from gtm_hit.admin.look_only import LookOnlyAdmin
-from gtm_hit.models import Calibration, Camera, Dataset, Frame, Image
+from gtm_hit.models import Calibration, CalibrationPlacement, Camera, Dataset, Frame, Image
 
 
 @admin.register(Dataset)
@@ -40,6 +40,14 @@ class CalibrationAdmin(LookOnlyAdmin):
     list_filter = ["dataset"]
     list_select_related = ["dataset", "created_by"]
     search_fields = ["=number", "dataset__slug", "source", "=digest"]
+
+
+@admin.register(CalibrationPlacement)
+class CalibrationPlacementAdmin(LookOnlyAdmin):
+    list_display = ["calibration", "source", "created_by", "created_at"]
+    list_filter = ["calibration__dataset"]
+    list_select_related = ["calibration__dataset", "created_by"]
+    search_fields = ["=calibration__number", "calibration__dataset__slug", "source"]
 
 
 @admin.register(Camera)

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from django.contrib.auth.models import User
-from django.db.models import QuerySet
 from django.http import Http404
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiExample, extend_schema, extend_schema_serializer
 from rest_framework import serializers
-from rest_framework.generics import ListAPIView
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -21,7 +19,6 @@ from gtm_hit.api.common.staff import (
     READS,
     WRITES,
     Conflict,
-    Pages,
     StaffView,
     answers,
     caller,
@@ -31,12 +28,12 @@ from gtm_hit.api.common.staff import (
 from gtm_hit.api.datasets.importing import refused
 from gtm_hit.api.jobs import JobShape, job_or_404, started
 from gtm_hit.formats.problems import FormatError
-from gtm_hit.models import ApiToken, Calibration, Dataset, Job
+from gtm_hit.models import ApiToken, Dataset, Job
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.calibration import job as calibration_job
 from gtm_hit.ops.calibration import versions
 from gtm_hit.ops.calibration.cameras import UNITS
-from gtm_hit.ops.calibration.reading import MOST_BYTES, read_upload
+from gtm_hit.ops.calibration.reading import MOST_BYTES, file_report, read_upload
 from gtm_hit.ops.calibration.replacing import ReplacementError
 
 
@@ -62,28 +59,6 @@ class CalibrationSerializer(serializers.Serializer[Any]):
         if ("file" in given) == ("version" in given):
             raise invalid("file", _("Send either a file or the number of a version."))
         return given
-
-
-class VersionSerializer(serializers.ModelSerializer[Calibration]):
-    created_by = serializers.CharField(source="created_by.username", default=None, allow_null=True)
-    in_place = serializers.SerializerMethodField()
-
-    class Meta:
-        model = Calibration
-        fields = ["number", "in_place", "source", "digest", "created_by", "created_at"]
-
-    def get_in_place(self, row: Calibration) -> bool:
-        return row.dataset.calibration_id == row.pk
-
-
-class WholeVersionSerializer(VersionSerializer):
-    cameras = serializers.DictField(help_text="the content of a cameras.json")
-    report = serializers.DictField(
-        help_text="a desk's: digests of its inputs, settings, figures per camera; empty where a file was sent"
-    )
-
-    class Meta(VersionSerializer.Meta):
-        fields = [*VersionSerializer.Meta.fields, "cameras", "report"]
 
 
 class MovedInCameraSerializer(serializers.Serializer[Any]):
@@ -181,44 +156,15 @@ class Calibrations(StaffView):
             cameras = read_upload(dataset, wanted["file"], wanted["tvec_unit"])
         except FormatError as error:
             raise refused("file", error) from error
-        return started(calibration_job.start(dataset, cameras, caller(request), wanted["file"].name))
+        file = wanted["file"]
+        report = file_report(file.name, file.chunks(), wanted["tvec_unit"])
+        return started(calibration_job.start(dataset, cameras, caller(request), file.name, report=report))
 
     def back_to(self, dataset: Dataset, number: int, user: User) -> Job:
         try:
             return calibration_job.start_version(dataset, number, user)
         except versions.UnknownVersion as error:
             raise invalid("version", error) from error
-
-
-class Versions(StaffView, ListAPIView[Calibration]):
-    queryset = Calibration.objects.none()
-    serializer_class = VersionSerializer
-    pagination_class = Pages
-
-    def get_queryset(self) -> QuerySet[Calibration]:
-        return versions.versions(dataset_or_404(self.kwargs["slug"]))
-
-    @extend_schema(
-        operation_id="calibration_versions",
-        summary="Every calibration the dataset has had, the newest first",
-        responses=answers(200, VersionSerializer(many=True), READS),
-    )
-    def get(self, request: Request, *args: Any, **kwargs: Any) -> Response:
-        return super().get(request, *args, **kwargs)
-
-
-class OneVersion(StaffView):
-    @extend_schema(
-        operation_id="calibration_version",
-        summary="A calibration the dataset has or had, with its cameras",
-        responses=answers(200, WholeVersionSerializer, READS),
-    )
-    def get(self, request: Request, slug: str, number: int) -> Response:
-        try:
-            found = versions.version(dataset_or_404(slug), number)
-        except versions.UnknownVersion as error:
-            raise Http404 from error
-        return Response(WholeVersionSerializer(found).data)
 
 
 class OneCalibration(StaffView):

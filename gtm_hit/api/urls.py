@@ -9,6 +9,7 @@ from drf_spectacular.views import SpectacularAPIView
 # Importing it tells drf-spectacular about the tokens.
 from gtm_hit.api import (
     calibration,
+    calibration_versions,
     campaign_people,
     campaigns,
     gold,
@@ -143,8 +144,9 @@ one_dataset: list[URLPattern | URLResolver] = [
     path("evaluation/frames/<int:number>/", comparing.EvaluationFrame.as_view()),
     path("agreement/", comparing.Agreement.as_view()),
     path("calibrations/", calibration.Calibrations.as_view()),
-    path("calibrations/versions/", calibration.Versions.as_view()),
-    path("calibrations/versions/<int:number>/", calibration.OneVersion.as_view()),
+    path("calibrations/versions/", calibration_versions.Versions.as_view()),
+    path("calibrations/versions/<int:number>/", calibration_versions.OneVersion.as_view()),
+    path("calibrations/differences/", calibration_versions.Differences.as_view()),
     path("calibrations/<int:pk>/", calibration.OneCalibration.as_view()),
     path("calibrations/<int:pk>/confirm/", calibration.ConfirmCalibration.as_view()),
     path("proposals/", proposals.Runs.as_view()),

@@ -3,7 +3,7 @@ from __future__ import annotations
 from gtm_hit.models.access import Attempt, EntryLink
 from gtm_hit.models.annotation import Annotation, AppendOnlyError, Layer, LayerFrame, Save
 from gtm_hit.models.api_token import ApiToken
-from gtm_hit.models.calibration import Calibration
+from gtm_hit.models.calibration import Calibration, CalibrationPlacement
 from gtm_hit.models.campaign import Campaign, CampaignWorker
 from gtm_hit.models.campaign_link import CampaignLink
 from gtm_hit.models.dataset import Camera, Dataset, Frame, Image
@@ -48,6 +48,7 @@ __all__ = [
     "Batch",
     "BoardPicture",
     "Calibration",
+    "CalibrationPlacement",
     "Camera",
     "Campaign",
     "CampaignLink",

@@ -46,3 +46,29 @@ class Calibration(models.Model):
         if not self._state.adding:
             raise AppendOnlyError("a calibration never changes: add another version")
         super().save(*args, **kwargs)
+
+
+class CalibrationPlacement(models.Model):
+    """Another time that a calibration was put in place: somebody went back, or came to the numbers again.
+
+    The first time is told by the calibration itself. What the other one says of its origin is kept as well.
+    """
+
+    calibration = models.ForeignKey(Calibration, on_delete=models.CASCADE, related_name="placements")
+    source = models.CharField(max_length=300, blank=True, help_text="where it came from, in words")
+    report = models.JSONField(default=dict, blank=True, help_text="as the calibration's own")
+    created_by = models.ForeignKey(
+        settings.AUTH_USER_MODEL, null=True, blank=True, on_delete=models.SET_NULL, related_name="+"
+    )
+    created_at = models.DateTimeField(auto_now_add=True)
+
+    class Meta:
+        ordering = ["calibration", "created_at", "pk"]
+
+    def __str__(self) -> str:
+        return f"{self.calibration} again"
+
+    def save(self, *args: Any, **kwargs: Any) -> None:
+        if not self._state.adding:
+            raise AppendOnlyError("what was put in place when never changes: add another line")
+        super().save(*args, **kwargs)

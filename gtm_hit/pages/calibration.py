@@ -20,7 +20,7 @@ from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.calibration import job as calibration_job
 from gtm_hit.ops.calibration import versions
 from gtm_hit.ops.calibration.cameras import UNITS
-from gtm_hit.ops.calibration.reading import MOST_BYTES, read_upload
+from gtm_hit.ops.calibration.reading import MOST_BYTES, file_report, read_upload
 from gtm_hit.ops.calibration.replacing import ReplacementError
 from gtm_hit.pages.common.access import StaffRequest, needs
 from gtm_hit.pages.common.uploads import takes_uploads
@@ -69,8 +69,10 @@ def calibration(request: StaffRequest, slug: str) -> HttpResponse:
             for problem in error.problems:
                 form.add_error("file", str(problem))
         else:
-            source = form.cleaned_data["file"].name
-            return redirect("job", pk=calibration_job.start(dataset, cameras, request.user, source).pk)
+            file: UploadedFile = form.cleaned_data["file"]
+            report = file_report(file.name or "", file.chunks(), form.cleaned_data["tvec_unit"])
+            job = calibration_job.start(dataset, cameras, request.user, file.name or "", report=report)
+            return redirect("job", pk=job.pk)
     context = {
         "section": "datasets",
         "tab": "calibration",

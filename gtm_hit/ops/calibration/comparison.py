@@ -1,4 +1,7 @@
-"""How far boxes move between two rectangle tables; counted a block of annotations at a time."""
+"""How far boxes move between two calibrations; counted a block of annotations at a time.
+
+Boxes are computed for the positions people stand on: a comparison writes no rectangle table.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from numpy.typing import NDArray
 
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import Cylinder, FootRule, rectangles
-from gtm_hit.geometry.table import RectangleTable
+from gtm_hit.geometry.grid import Grid
 
 MOST_WORST = 20
 
@@ -32,24 +35,23 @@ class Person:
 
 @dataclass(frozen=True)
 class Calibration:
-    """Cameras with their table, and what rectangles of other cylinders need."""
+    """Cameras, and what rectangles need beside them."""
 
     cameras: Sequence[Camera]
-    table: RectangleTable
-    cylinder: Cylinder
+    grid: Grid
     rule: FootRule
 
     def boxes(self, people: Sequence[Person]) -> tuple[Boxes, Visible]:
         """(N, cameras, 4) pixels and (N, cameras)."""
-        boxes, visible = self.table.rectangles([person.position for person in people])
-        boxes, visible = boxes.copy(), visible.copy()
-        for size in {person.size for person in people} - {self.cylinder}:
-            rows = [row for row, person in enumerate(people) if person.size == size]
-            positions = np.array([people[row].position for row in rows])
+        boxes = np.zeros((len(people), len(self.cameras), 4), dtype=np.int16)
+        visible = np.zeros(boxes.shape[:2], dtype=np.bool_)
+        for size in {person.size for person in people}:
+            rows = np.array([row for row, person in enumerate(people) if person.size == size])
+            # Many frames have people on the same positions.
+            positions, back = np.unique([people[row].position for row in rows], return_inverse=True)
             for index, camera in enumerate(self.cameras):
-                boxes[rows, index], visible[rows, index] = rectangles(
-                    camera, self.table.grid, size, self.rule, positions
-                )
+                found, seen = rectangles(camera, self.grid, size, self.rule, positions)
+                boxes[rows, index], visible[rows, index] = found[back], seen[back]
         return boxes, visible
 
 

@@ -18,7 +18,7 @@ from gtm_hit.ops.calibration.replacing import ReplacementError
 from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.jobs.progress import percents
 
-SHARES = {replacing.RECTANGLES: (0, 60), replacing.COMPARING: (60, 100)}
+SHARES = {replacing.COMPARING: (0, 100)}
 
 
 def start(
@@ -46,7 +46,7 @@ def start(
 def start_version(dataset: Dataset, number: int, user: User | None = None) -> Job:
     """Compare with a calibration the dataset had before. Raises UnknownVersion."""
     found = versions.version(dataset, number)
-    return start(dataset, versions.cameras_in(found), user, found.source, number)
+    return start(dataset, versions.cameras_in(found), user, versions.gone_back(number), number)
 
 
 def run(mine: queue.Run) -> dict[str, Any]:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from django.conf import settings
 from django.core.files.uploadedfile import UploadedFile
@@ -46,6 +49,15 @@ def read_replacement(dataset: Dataset, path: Path, unit: str = "m") -> list[Came
         tell_wrong_unit(cameras, dataset.grid, unit, problems)
     problems.raise_if_any()
     return cameras
+
+
+def file_report(name: str, data: Iterable[bytes], unit: str) -> dict[str, Any]:
+    """Of a version that came as a file: its name, its content's digest, and what it was read as."""
+    digest = hashlib.sha256()
+    for chunk in data:
+        digest.update(chunk)
+    json_too = name.lower().endswith(".json")  # always in metres, whatever was said
+    return {"file": {"name": name, "sha256": digest.hexdigest(), "unit": "m" if json_too else unit}}
 
 
 def read_upload(dataset: Dataset, file: UploadedFile, unit: str = "m") -> list[Camera]:

@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import islice
-from pathlib import Path
 from typing import Any
 
-from django.conf import settings
 from django.contrib.auth.models import User
 from django.db import transaction
-from django.db.models import Count, Max
+from django.db.models import Count, F, Max
 
 from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import Cylinder
-from gtm_hit.geometry.table import RectangleTable, table_digest
+from gtm_hit.geometry.table import table_digest
 from gtm_hit.models import Annotation, Calibration, Dataset, Image, Layer, Save
 from gtm_hit.ops.calibration import comparison as compared
 from gtm_hit.ops.calibration import versions
 from gtm_hit.ops.calibration.comparison import Comparison, Moved, Person
 from gtm_hit.ops.errors import OperationError
+from gtm_hit.ops.ground.coverage import table
 from gtm_hit.ops.jobs.progress import Progress
 
 PEOPLE_TOGETHER = 20_000
-RECTANGLES, COMPARING = "computing rectangles", "comparing boxes"
+COMPARING = "comparing boxes"
 LATTICE = 7  # positions along each side that stand in for people where nobody is annotated
 
 
@@ -32,17 +32,17 @@ class ReplacementError(OperationError, ValueError):
 
 
 def preview(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> dict[str, Any]:
-    """What putting `cameras` in place would do to every box, as JSON values. Builds the new table.
+    """What putting `cameras` in place would do to every box, as JSON values.
 
-    Positions of annotations stay as they are; nothing is written.
+    Positions of annotations stay as they are; nothing is written, no rectangle table either.
     """
     state = state_of(dataset)
     comparison = Comparison(
-        _calibration(dataset, dataset.calibrated_cameras(), progress),
-        _calibration(dataset, cameras, progress),
+        compared.Calibration(dataset.calibrated_cameras(), dataset.grid, dataset.rule),
+        compared.Calibration(cameras, dataset.grid, dataset.rule),
     )
     total = Annotation.objects.filter(layer__dataset=dataset).count()
-    people = _people(dataset)
+    people = people_of(dataset)
     progress(COMPARING, 0, total)
     while block := list(islice(people, PEOPLE_TOGETHER)):
         comparison.add(block)
@@ -50,7 +50,6 @@ def preview(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> 
         progress(COMPARING, min(comparison.people, total), total)
     return {
         "state": state,
-        "table_digest": comparison.after.table.digest,  # keeps the table until this is confirmed
         "annotations": comparison.people,
         "cameras": comparison.cameras(),
         "worst": [_worst(moved) for moved in comparison.worst],
@@ -83,6 +82,8 @@ def replace_calibration(
             row.rvec, row.tvec = camera.rvec.tolist(), camera.tvec.tolist()
             row.model = camera.model.value
             row.save(update_fields=["matrix", "distortion", "rvec", "tvec", "model"])
+        # The next one who opens the dataset need not wait for it; should it fail, he makes it.
+        transaction.on_commit(partial(table, dataset, cameras=cameras), robust=True)
         return versions.put_in_place(dataset, cameras, source, user, report)
 
 
@@ -94,21 +95,12 @@ def state_of(dataset: Dataset) -> list[Any]:
     return [digest, *saves.values(), *people.values()]
 
 
-def _calibration(dataset: Dataset, cameras: Sequence[Camera], progress: Progress) -> compared.Calibration:
-    table = RectangleTable.build(
-        Path(settings.TABLES_ROOT),
-        cameras,
-        dataset.grid,
-        dataset.cylinder,
-        dataset.rule,
-        lambda done, total: progress(RECTANGLES, done, total),
-    )
-    return compared.Calibration(cameras, table, dataset.cylinder, dataset.rule)
-
-
-def _people(dataset: Dataset, **chosen: Any) -> Iterator[Person]:
+def people_of(dataset: Dataset, every: int = 1, **chosen: Any) -> Iterator[Person]:
+    """Annotations of all layers, in the order they were made; with `every` that part of them only."""
     usual = dataset.cylinder
     rows = Annotation.objects.filter(layer__dataset=dataset, **chosen).order_by("pk")
+    if every > 1:
+        rows = rows.annotate(rest=F("pk") % every).filter(rest=0)
     fields = ("layer__name", "frame__number", "person", "position", "radius", "height")
     for layer, frame, person, position, radius, height in rows.values_list(*fields).iterator(PEOPLE_TOGETHER):
         size = usual if radius is height is None else Cylinder(radius or usual.radius, height or usual.height)
@@ -145,7 +137,7 @@ def _picture(dataset: Dataset, comparison: Comparison) -> dict[str, Any]:
     else:
         frame = dataset.frames.get(pk=fullest["frame"])
         layer = Layer.objects.get(pk=fullest["layer"]).name
-        people = list(_people(dataset, layer=fullest["layer"], frame=frame))
+        people = list(people_of(dataset, layer=fullest["layer"], frame=frame))
     images = Image.objects.filter(frame=frame).order_by("camera__index")
     return {
         "frame": frame.number if frame else None,

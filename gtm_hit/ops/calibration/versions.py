@@ -10,12 +10,17 @@ from django.db.models import Max, QuerySet
 
 from gtm_hit.formats.calibration.cameras_json import cameras_content, cameras_of, content_digest
 from gtm_hit.geometry.camera import Camera
-from gtm_hit.models import Calibration, Dataset
+from gtm_hit.models import Calibration, CalibrationPlacement, Dataset
 from gtm_hit.ops.errors import OperationError
 
 IMPORTED = "import"
 NOT_KNOWN = "in place before versions were kept"
 SOURCE_LENGTH = 300
+
+
+def gone_back(number: int) -> str:
+    """The source of a calibration that the dataset had before."""
+    return f"version {number}"
 
 
 class UnknownVersion(OperationError, LookupError):
@@ -79,6 +84,11 @@ def put_in_place(
             source=source[:SOURCE_LENGTH],
             report=report or {},
             created_by=user,
+        )
+    elif report or found.pk != dataset.calibration_id:
+        # A version never changes: what is known of it now is kept beside what was known first.
+        CalibrationPlacement.objects.create(
+            calibration=found, source=source[:SOURCE_LENGTH], report=report or {}, created_by=user
         )
     dataset.calibration = found
     dataset.save(update_fields=["calibration"])

@@ -1,4 +1,4 @@
-"""The end of rectangle tables: those that no calibration in place and no open comparison needs."""
+"""The end of rectangle tables: those that no calibration in place needs."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from datetime import datetime, timedelta
 from django.conf import settings
 
 from gtm_hit.geometry.table import table_digest
-from gtm_hit.models import Dataset, Job
+from gtm_hit.models import Dataset
 
-GRACE = timedelta(days=7)  # how long a comparison may wait for its confirmation with its table at hand
+GRACE = timedelta(days=7)  # somebody may go back to a calibration, and jobs that began before it work on
 
 
 def sweep(now: datetime) -> int:
@@ -22,7 +22,7 @@ def sweep(now: datetime) -> int:
     ]
     if not old:
         return 0
-    needed = {f"rectangles-{digest}.bin" for digest in _in_place() | _compared_since(oldest)}
+    needed = {f"rectangles-{digest}.bin" for digest in _in_place()}
     unneeded = [path for path in old if path.name not in needed]
     for path in unneeded:
         path.unlink(missing_ok=True)  # whoever has it open keeps its bytes
@@ -36,12 +36,3 @@ def _in_place() -> set[str]:
         for dataset in datasets
         if (cameras := dataset.calibrated_cameras())
     }
-
-
-def _compared_since(oldest: datetime) -> set[str]:
-    """Of comparisons that may still be confirmed."""
-    jobs = Job.objects.filter(
-        kind=Job.Kind.REPLACE_CALIBRATION, state=Job.State.DONE, finished_at__gte=oldest
-    )
-    results = jobs.filter(result__confirmed_at__isnull=True).values_list("result__table_digest", flat=True)
-    return {digest for digest in results if digest}
