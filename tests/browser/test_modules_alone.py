@@ -11,8 +11,7 @@ pytestmark = pytest.mark.browser
 
 STATIC = REPOSITORY / "static"
 STARTING = {
-    *("workbench/main.js", "workbench/start.js", "workbench/comments/start.js"),
-    *("compare/main.js", "review/main.js", "conflicts/main.js", "calibration/ground/main.js"),
+    path.relative_to(STATIC).as_posix() for name in ("main.js", "start.js") for path in STATIC.rglob(name)
 }
 SCRIPTS = {
     f"site/{path.name}" for path in (STATIC / "site").glob("*.js")

@@ -13,6 +13,7 @@ import { Emitter } from "../../base/emitter.js";
 import { gettext, ngettext } from "../../base/messages.js";
 import { annotation, CARRIED, VALIDATED } from "../../truth/annotation.js";
 import { patch } from "../../truth/commands.js";
+import { inherited } from "./inheriting.js";
 import { openOnes, personsOf } from "./matching.js";
 
 const ORIGIN = "proposed";
@@ -32,6 +33,14 @@ export class Proposals extends Emitter {
     this._history = history;
     this._threshold = threshold;
     this._frames = new Map(answer.frames.map((frame) => [frame.number, frame.people]));
+    /** @type {Map<number, Map<number, Proposed>>} track → frame → the proposal there */
+    this._tracks = new Map();
+    for (const { number, people } of answer.frames) {
+      for (const one of people)
+        this._tracks.set(one.track, (this._tracks.get(one.track) ?? new Map()).set(number, one));
+    }
+    /** @type {WeakMap<Proposed, Proposed>} as it was proposed → as it was moved last; the same one as long as it stays there */
+    this._moved = new WeakMap();
     /** @type {Map<number, number>} person by track */
     this._known = new Map();
     for (const one of answer.frames.flatMap(({ people }) => people)) {
@@ -72,8 +81,29 @@ export class Proposals extends Emitter {
     const refused = new Set(
       [...this._refused.values()].flatMap(({ frame, position }) => (frame === number ? [position] : [])),
     );
-    const proposed = this._frames.get(number) ?? [];
+    const proposed = (this._frames.get(number) ?? []).map((one) => this._inherited(number, one));
     return openOnes(proposed, this._store.people(number), refused, this._known, this.metres);
+  }
+
+  /**
+   * Corrected as the same person was in the nearest frame that somebody has looked at, if both stand alike.
+   * @param {number} number @param {Proposed} one
+   */
+  _inherited(number, one) {
+    const person = this._known.get(one.track);
+    const track = this._tracks.get(one.track);
+    if (person === undefined || !track) return one;
+    const index = this._store.numbers.indexOf(number);
+    /** @param {number} other */
+    const away = (other) => Math.abs(this._store.numbers.indexOf(other) - index);
+    const [nearest] = [...track.keys()]
+      .filter((other) => other !== number && this._store.person(person, other)?.state === VALIDATED)
+      .sort((first, second) => away(first) - away(second));
+    const other = track.get(nearest);
+    if (!other) return one;
+    const moved = inherited(one, other, this._store.marked(person, nearest).position, this._scene);
+    if (this._moved.get(one)?.position !== moved.position) this._moved.set(one, moved);
+    return this._moved.get(one) ?? one;
   }
 
   /** Those taken for real. */
@@ -123,16 +153,32 @@ export class Proposals extends Emitter {
     this._history.run({ ...patch(this._store, gettext("refuse a proposal"), []), refuses });
   }
 
-  /** @param {Proposed[]} chosen @param {import("../../truth/annotation.js").State} state @param {string} label */
-  _take(chosen, state, label) {
-    const persons = personsOf(chosen, this._store.people(), this._known, this.metres);
-    const edits = chosen.map((one) => {
+  /**
+   * Whom each of them is of, as far as that is known; those who would be somebody new are not in the map.
+   * @param {Proposed[]} chosen
+   */
+  personsOf(chosen) {
+    return personsOf(chosen, this._store.people(), this._known, this.metres);
+  }
+
+  /**
+   * What makes people of them, for a step that does more than that.
+   * @param {Proposed[]} chosen @param {import("../../truth/annotation.js").State} state
+   */
+  edits(chosen, state) {
+    const persons = this.personsOf(chosen);
+    return chosen.map((one) => {
       const person = persons.get(one) ?? this._store.takePerson();
       if (!this._known.has(one.track)) this._known.set(one.track, person);
       const { position, height, radius } = one;
       const after = annotation({ person, position, state, origin: ORIGIN, height, radius });
       return { frame: this._store.current, person, after };
     });
+  }
+
+  /** @param {Proposed[]} chosen @param {import("../../truth/annotation.js").State} state @param {string} label */
+  _take(chosen, state, label) {
+    const edits = this.edits(chosen, state);
     const select = edits.length === 1 ? edits[0].person : undefined;
     this._history.run(patch(this._store, label, edits, { select }));
   }
