@@ -45,6 +45,7 @@ export class Sheet {
     this._proposals = proposals;
     /** @type {SheetCell[]} */
     this.cells = [];
+    this._number = -1; // of the frame they are of
     /** @type {SheetCell|null} the one that keys are about: under the pointer, or gone to */
     this.focus = null;
     /** @type {Set<SheetCell>} whoever has been in sight in this frame */
@@ -80,7 +81,9 @@ export class Sheet {
   /** @param {boolean} shown */
   show(shown) {
     this.element.hidden = !shown;
-    if (shown) this._begin();
+    if (shown && this._number !== this._store.current) this._begin();
+    else if (shown)
+      this.later(); // everybody has kept their places
     else this._panes.markPictures(); // what they need in full is theirs to say
   }
 
@@ -119,6 +122,7 @@ export class Sheet {
 
   /** A frame is opened: its people get their places. */
   _begin() {
+    this._number = this._store.current;
     const frame = this._frame();
     this.cells = slotsOf(frame).map((slot) => this._cell(slot));
     this.focus = null;

@@ -21,5 +21,6 @@ export async function startSheet(session, page) {
   const sheet = new Sheet({ ...session, ...page, proposals });
   const acting = new SheetActions({ ...session, ...page, sheet, proposals, snapping });
   page.actions.around(acting.table());
+  page.actions.use({ sheet: () => acting.toggle() }); // at once, now that it is here
   return acting;
 }
