@@ -43,7 +43,12 @@ export class Hands {
 
   /** A deviation, as a hand's or an eye's at something that is shown so large. @param {number} scale */
   miss(scale) {
-    return Math.hypot(this._screen, (this.plan.imagePixels ?? IMAGE) * scale) * this._random();
+    return this.sigma(scale) * this._random();
+  }
+
+  /** CSS pixels along each axis. */
+  sigma(scale) {
+    return Math.hypot(this._screen, (this.plan.imagePixels ?? IMAGE) * scale);
   }
 
   /** The pointer goes to a tile of the sheet. */

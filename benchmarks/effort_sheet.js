@@ -8,7 +8,7 @@ import { NEAR } from "./effort_steps.js";
 
 const TRIES = 6; // clicks on one person, after which arrow keys do it
 const CLICKS = 1.4; // clicks a person takes, about
-const CLEAR = 1.5; // CSS pixels beyond the ring from which the eye is sure
+const SURE = 2; // of the eye's own unsureness: so far beyond the ring somebody clearly stands elsewhere
 
 export class SheetAnnotator extends Annotator {
   async run() {
@@ -148,7 +148,8 @@ export class SheetAnnotator extends Annotator {
     const [x, y] = ["x", "y"].map((axis) => centre[axis] + ((ground[axis] - centre[axis]) * NEAR) / away);
     const edge = this.scene.toImage(view, { x, y });
     const border = edge && transform.toPane(edge.x, edge.y);
-    return !border || Math.hypot(border.x - eye.x, border.y - eye.y) > CLEAR;
+    const sure = SURE * this._hands.sigma(transform.scale);
+    return !border || Math.hypot(border.x - eye.x, border.y - eye.y) > sure;
   }
 
   /** The tiles of a cell that show the feet: where those are, and the box. */

@@ -13,7 +13,7 @@ import { Emitter } from "../../base/emitter.js";
 import { gettext, ngettext } from "../../base/messages.js";
 import { annotation, CARRIED, VALIDATED } from "../../truth/annotation.js";
 import { patch } from "../../truth/commands.js";
-import { inherited } from "./inheriting.js";
+import { standing, walking } from "./inheriting.js";
 import { openOnes, personsOf } from "./matching.js";
 
 const ORIGIN = "proposed";
@@ -81,29 +81,53 @@ export class Proposals extends Emitter {
     const refused = new Set(
       [...this._refused.values()].flatMap(({ frame, position }) => (frame === number ? [position] : [])),
     );
-    const proposed = (this._frames.get(number) ?? []).map((one) => this._inherited(number, one));
+    const proposed = (this._frames.get(number) ?? []).map((one) => this._settled(number, one));
     return openOnes(proposed, this._store.people(number), refused, this._known, this.metres);
   }
 
   /**
-   * Corrected as the same person was in the nearest frame that somebody has looked at, if both stand alike.
+   * As the frames beside it show the same track: corrected as somebody who stands was corrected there, or between the
+   * steps of somebody who walks.
    * @param {number} number @param {Proposed} one
    */
-  _inherited(number, one) {
-    const person = this._known.get(one.track);
-    const track = this._tracks.get(one.track);
-    if (person === undefined || !track) return one;
-    const index = this._store.numbers.indexOf(number);
-    /** @param {number} other */
-    const away = (other) => Math.abs(this._store.numbers.indexOf(other) - index);
-    const [nearest] = [...track.keys()]
-      .filter((other) => other !== number && this._store.person(person, other)?.state === VALIDATED)
-      .sort((first, second) => away(first) - away(second));
-    const other = track.get(nearest);
-    if (!other) return one;
-    const moved = inherited(one, other, this._store.marked(person, nearest).position, this._scene);
+  _settled(number, one) {
+    const moved = this._standing(number, one) ?? this._walking(number, one);
     if (this._moved.get(one)?.position !== moved.position) this._moved.set(one, moved);
     return this._moved.get(one) ?? one;
+  }
+
+  /** By the nearest frame in which somebody has looked at the person. @param {number} number @param {Proposed} one */
+  _standing(number, one) {
+    const { numbers } = this._store;
+    const index = numbers.indexOf(number);
+    /** @param {number} other */
+    const away = (other) => Math.abs(numbers.indexOf(other) - index);
+    const [nearest] = [...(this._tracks.get(one.track)?.keys() ?? [])]
+      .filter((other) => other !== number && this._marked(other, one.track) !== null)
+      .sort((first, second) => away(first) - away(second));
+    const beside = this._beside(nearest, one.track);
+    return beside && standing(one, beside, this._scene);
+  }
+
+  /** @param {number} number @param {Proposed} one */
+  _walking(number, one) {
+    const [earlier, later] = [-1, 1].map((offset) => this._store.neighbour(offset, number));
+    if (earlier === undefined || later === undefined || number - earlier !== later - number) return one;
+    const [before, after] = [earlier, later].map((other) => this._beside(other, one.track));
+    return before && after ? walking(one, before, after, this._scene) : one;
+  }
+
+  /** @param {number} number @param {number} track @returns {import("./inheriting.js").Beside|null} */
+  _beside(number, track) {
+    const proposal = this._tracks.get(track)?.get(number);
+    return proposal ? { proposal, marked: this._marked(number, track) } : null;
+  }
+
+  /** Where an annotator has validated whoever the track is of. @param {number} number @param {number} track */
+  _marked(number, track) {
+    const person = this._known.get(track);
+    const one = person === undefined ? undefined : this._store.person(person, number);
+    return one?.state === VALIDATED ? one.position : null;
   }
 
   /** Those taken for real. */

@@ -10,9 +10,8 @@
  * @typedef {XY & {sigma: number}} Known metres it may be off along each axis
  * @typedef {{xx: number, xy: number, yy: number, x: number, y: number}} Normal equations of least squares
  */
-const ROUNDS = 6;
+const ROUNDS = 12;
 const BESIDE = 0.01; // metres by which slopes are measured
-const ELSEWHERE = 0.5; // metres from where they were thought to be: then nothing was known
 
 /**
  * @param {Seeing} scene @param {Known} known @param {Click[]} clicks at least one
@@ -21,23 +20,26 @@ const ELSEWHERE = 0.5; // metres from where they were thought to be: then nothin
 export function footFrom(scene, known, clicks) {
   const grounds = clicks.map(({ view, pixel }) => scene.toGround(view, pixel));
   if (grounds.some((one) => one === null)) return null;
-  const last = /** @type {XY} */ (grounds.at(-1));
-  const trusted = Math.hypot(last.x - known.x, last.y - known.y) <= ELSEWHERE;
-  let at = trusted ? { x: known.x, y: known.y } : last;
+  /** @type {XY} */
+  let at = { x: known.x, y: known.y };
   for (let round = 0; round < ROUNDS; round += 1) {
-    const step = stepFrom(scene, trusted ? known : null, clicks, at);
-    if (!step) return last;
+    const step = stepFrom(scene, known, clicks, at);
+    if (!step) return grounds.at(-1) ?? null;
     at = { x: at.x + step.x, y: at.y + step.y };
   }
   return at;
 }
 
-/** @param {Seeing} scene @param {Known|null} known @param {Click[]} clicks @param {XY} at @returns {XY|null} */
+/**
+ * The farther away somebody turns out to be, the less was known (Cauchy's distribution).
+ * @param {Seeing} scene @param {Known} known @param {Click[]} clicks @param {XY} at @returns {XY|null}
+ */
 function stepFrom(scene, known, clicks, at) {
   /** @type {Normal} */
   const sum = { xx: 0, xy: 0, yy: 0, x: 0, y: 0 };
-  if (known) add(sum, { x: 1, y: 0 }, known.x - at.x, known.sigma);
-  if (known) add(sum, { x: 0, y: 1 }, known.y - at.y, known.sigma);
+  const sigma = Math.hypot(known.sigma, known.x - at.x, known.y - at.y);
+  add(sum, { x: 1, y: 0 }, known.x - at.x, sigma);
+  add(sum, { x: 0, y: 1 }, known.y - at.y, sigma);
   for (const { view, pixel, sigma } of clicks) {
     const slopes = slopesAt(scene, view, at);
     if (!slopes) return null;
