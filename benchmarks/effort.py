@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import sys
 from collections import defaultdict
+from collections.abc import Sequence
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,8 @@ import numpy as np
 from playwright.sync_api import Browser, Route, ViewportSize, sync_playwright
 
 from gtm_hit.formats.calibration.cameras_json import load_cameras
-from gtm_hit.geometry.cylinder import HEIGHTS, RADII
+from gtm_hit.geometry.camera import Camera
+from gtm_hit.geometry.cylinder import HEIGHTS, RADII, FootRule
 from gtm_hit.geometry.grid import Grid
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -36,7 +38,8 @@ SEED = 11
 SPREAD, MISSED, FALSE = 0.036, 0.01, 0.01  # metres along each axis, shares
 TYPES = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
 PAGE = """<!doctype html><link rel="stylesheet" href="/static/workbench/workbench.css">
-<link rel="stylesheet" href="/static/workbench/frames/time.css"><div id="workbench"></div>"""
+<link rel="stylesheet" href="/static/workbench/frames/time.css">
+<link rel="stylesheet" href="/static/workbench/sheet/sheet.css"><div id="workbench"></div>"""
 
 PLANS: dict[str, dict[str, Any]] = {
     "copies, arrow keys (the original's way)": {"copies": True},
@@ -88,11 +91,13 @@ def main() -> None:
 
 
 def print_row(name: str, report: dict[str, Any]) -> None:
+    """A line of the table; who goes by the eye is told how many it was right about."""
     if report["wrong"]:
         sys.exit(f"{name}: not annotated: {report['wrong'][:5]}")
     kinds = [report["counts"].get(kind, 0) for kind in ("arrow keys", "other keys", "clicks")]
     arrows, keys, clicks = (actions / report["persons"] for actions in kinds)
-    print(f"{name:<52}{arrows + keys + clicks:>6.2f}{arrows:>8.2f}{keys:>6.2f}{clicks:>8.2f}", flush=True)
+    near = f"   {100 * report['near']:.0f} % right" if report.get("near", 1) < 1 else ""
+    print(f"{name:<52}{arrows + keys + clicks:>6.2f}{arrows:>8.2f}{keys:>6.2f}{clicks:>8.2f}{near}", flush=True)
 
 
 def read_frames(path: Path) -> list[list[int]]:
@@ -138,13 +143,15 @@ def annotate(
     frames: list[dict[int, int]],
     plan: dict[str, Any],
     proposed: dict[str, Any] | None = None,
+    told: dict[str, Any] | None = None,
 ) -> dict[str, Any]:
+    """What the annotator did; `told`: the scene, if it is not WILDTRACK's."""
     page = browser.new_context(viewport=SCREEN).new_page()
     page.set_default_timeout(0)
     page.on("pageerror", lambda error: sys.exit(f"{plan}: {error}"))
     page.route(ADDRESS + "**", answer)
     page.goto(ADDRESS)
-    told = {**scene(len(frames)), "proposed": "proposals" in plan}
+    told = {**(told or scene(len(frames))), "proposed": "proposals" in plan}
     proposed = proposed or proposals(frames)
     job = {"scene": told, "truth": frames, "plan": plan, "seed": SEED, "proposed": proposed}
     report: dict[str, Any] = page.evaluate(
@@ -168,10 +175,9 @@ def proposals(frames: list[dict[int, int]]) -> dict[str, Any]:
     return {"run": 1, "threshold": 0.5, "frames": found}
 
 
-def person(number: int, track: int, xy: Any, score: float = 0.9) -> dict[str, Any]:
-    inside = np.clip(xy, (-3, -9), (8.97, 26.97))
+def person(number: int, track: int, xy: Any, score: float = 0.9, grid: Grid = GRID) -> dict[str, Any]:
     return {
-        **{"id": number, "position": int(GRID.position([inside])[0]), "track": track, "person": None},
+        **{"id": number, "position": int(grid.nearest(np.array([xy]))[0]), "track": track, "person": None},
         **{"height": None, "radius": None, "score": score, "doubt": 1 - score, "evidence": []},
         **{"seated": False, "filled": False},
     }
@@ -189,9 +195,14 @@ def answer(route: Route) -> None:
         route.fulfill(status=404)
 
 
-def scene(frames: int) -> dict[str, Any]:
+def scene(
+    frames: int,
+    cameras: Sequence[Camera] | None = None,
+    grid: Grid = GRID,
+    rule: FootRule = FootRule.CORNERS,
+) -> dict[str, Any]:
     """What the server would say about an assignment of so many frames, without pictures."""
-    cameras = load_cameras(ROOT / "fixtures" / "wildtrack_cameras.json")
+    cameras = cameras or load_cameras(ROOT / "fixtures" / "wildtrack_cameras.json")
     return {
         "mode": "assignment",
         "dataset": {
@@ -201,14 +212,14 @@ def scene(frames: int) -> dict[str, Any]:
             "frame_step": FRAME_STEP,
         },
         "grid": {
-            "columns": GRID.columns,
-            "rows": GRID.rows,
-            "step": GRID.step,
-            "origin": [GRID.origin_x, GRID.origin_y],
+            "columns": grid.columns,
+            "rows": grid.rows,
+            "step": grid.step,
+            "origin": [grid.origin_x, grid.origin_y],
         },
         "cylinder": {"radius": 0.16, "height": 1.8},
         "sizes": {"height": HEIGHTS, "radius": RADII},
-        "foot_rule": "corners",
+        "foot_rule": rule.value,
         "cameras": [
             {
                 "index": camera.index,

@@ -1,7 +1,7 @@
 /** Hands of the scripted annotator: real events at the real page, each of them counted. Clicks miss by a normal error. */
 import { NEAR, shortestWay } from "./effort_steps.js";
 
-const SCREEN = 3; // CSS pixels, standard deviation of a click along each axis
+const SCREEN = 3; // CSS pixels, standard deviation of a click along each axis, unless the plan says otherwise
 const IMAGE = 1; // image pixels a picture leaves open, however far one zooms in
 const PATIENCE = 24_000; // actions in one frame after which something is wrong
 
@@ -32,6 +32,44 @@ export class Hands {
     this._map.element.dispatchEvent(new PointerEvent("pointerenter", {}));
   }
 
+  get _screen() {
+    return this.plan.screen ?? SCREEN;
+  }
+
+  /** What was done is on the screen. */
+  look() {
+    while (this._paints.length) for (const paint of this._paints.splice(0)) paint(performance.now());
+  }
+
+  /** A deviation, as a hand's or an eye's at something that is shown so large. @param {number} scale */
+  miss(scale) {
+    return this.sigma(scale) * this._random();
+  }
+
+  /** CSS pixels along each axis. */
+  sigma(scale) {
+    return Math.hypot(this._screen, (this.plan.imagePixels ?? IMAGE) * scale);
+  }
+
+  /** The pointer goes to a tile of the sheet. */
+  pointAtTile(cell) {
+    this._count("clicks");
+    this._overTile("pointermove", cell, middleOf(cell));
+  }
+
+  clickTile(cell, at) {
+    this._count("clicks");
+    this._overTile("pointermove", cell, at);
+    this._overTile("click", cell, at);
+  }
+
+  _overTile(type, { canvas }, { x, y }) {
+    const { left, top } = canvas.getBoundingClientRect();
+    const Kind = type === "click" ? MouseEvent : PointerEvent;
+    const init = { clientX: left + x, clientY: top + y, bubbles: true, cancelable: true };
+    canvas.dispatchEvent(new Kind(type, init));
+  }
+
   get _map() {
     return this._panes.get("map");
   }
@@ -44,7 +82,7 @@ export class Hands {
   /** Shift and a click, where somebody is missing. */
   place(position) {
     this._count("clicks");
-    const { pane, sigma } = this.bestView(position) ?? { pane: this._map, sigma: SCREEN };
+    const { pane, sigma } = this.bestView(position) ?? { pane: this._map, sigma: this._screen };
     const init = {
       ...this._aim(pane, position, sigma),
       button: 0,
@@ -72,7 +110,7 @@ export class Hands {
 
   clickRow(person) {
     this._count("clicks");
-    for (const paint of this._paints.splice(0)) paint(performance.now());
+    this.look();
     [...document.querySelectorAll(".people li")]
       .find((row) => row.querySelector(".number").textContent === String(person))
       .click();
@@ -127,7 +165,7 @@ export class Hands {
       onPane(pane, { x: ground.x, y: ground.y + 0.01 }),
     ];
     const [a, b, c, d] = [right.x - at.x, up.x - at.x, right.y - at.y, up.y - at.y].map((pixels) => pixels / 0.01);
-    const sigma = Math.hypot(SCREEN, (this.plan.imagePixels ?? IMAGE) * pane.transform.scale);
+    const sigma = Math.hypot(this._screen, (this.plan.imagePixels ?? IMAGE) * pane.transform.scale);
     return { sigma, variance: (sigma ** 2 * (a * a + b * b + c * c + d * d)) / (a * d - b * c) ** 2 };
   }
 
@@ -136,13 +174,28 @@ export class Hands {
     const isOccupied = (position) => Boolean(this.store.occupant(position, this.store.selection));
     const rules = { mayFar: this.plan.far, isOccupied };
     const { cost, along, sign, far } = shortestWay(this.scene.grid, from, to, rules);
-    const axes = this._map.view.axes();
+    return { cost, far, key: this._keyOf(this._map.view.axes(), along, sign) };
+  }
+
+  /** The same as one view shows it. */
+  arrowIn(view, from, to, person) {
+    const isOccupied = (position) => Boolean(this.store.occupant(position, person));
+    const rules = { mayFar: this.plan.far, isOccupied };
+    const { cost, along, sign, far } = shortestWay(this.scene.grid, from.position, to, rules);
+    return { cost, far, key: this._keyOf(this._panes.get(view).view.axes(from), along, sign) };
+  }
+
+  _keyOf(axes, along, sign) {
     const wanted = along === "x" ? { columns: sign, rows: 0 } : { columns: 0, rows: sign };
     const name = Object.keys(axes).find(
       (one) => axes[one].columns === wanted.columns && axes[one].rows === wanted.rows,
     );
-    return { cost, far, key: { left: "ArrowLeft", right: "ArrowRight", up: "ArrowUp", down: "ArrowDown" }[name] };
+    return { left: "ArrowLeft", right: "ArrowRight", up: "ArrowUp", down: "ArrowDown" }[name];
   }
+}
+
+function middleOf({ canvas }) {
+  return { x: canvas.clientWidth / 2, y: canvas.clientHeight / 2 };
 }
 
 function onPane(pane, ground) {

@@ -9,9 +9,10 @@ import { Scene } from "/static/truth/scene.js";
 import { Store } from "/static/truth/store.js";
 import { Images } from "/static/views/images.js";
 import { Panes } from "/static/views/panes.js";
+import { Sheet } from "/static/workbench/sheet/sheet.js";
 import { buildWorkbench } from "/static/workbench/workbench.js";
 
-/** @returns the session and its panes, as the page builds them: view → pane */
+/** @returns the session, its panes as the page builds them (view → pane), and what answers with its sheet, once opened */
 export async function openWorkbench(json, proposed) {
   const panes = new Map();
   const add = Panes.prototype.addExtra;
@@ -19,11 +20,17 @@ export async function openWorkbench(json, proposed) {
     for (const pane of this.all) panes.set(pane.view.index ?? "map", pane);
     add.call(this, extra);
   };
+  let opened = null;
+  const show = Sheet.prototype.show;
+  Sheet.prototype.show = function noted(shown) {
+    opened = this;
+    show.call(this, shown);
+  };
   Element.prototype.setPointerCapture = () => {}; // made-up pointers cannot be captured
   const session = makeSession(new Scene(json), await Journal.open(null), proposed);
   buildWorkbench(document.getElementById("workbench"), session, { mode: "assignment", home: "/" });
   await new Promise((done) => setTimeout(done, 300)); // until the panes know their size
-  return { session, panes };
+  return { session, panes, sheet: () => opened };
 }
 
 function makeSession(scene, journal, proposed) {
@@ -35,7 +42,7 @@ function makeSession(scene, journal, proposed) {
     nobody: false,
   }));
   const api = {
-    ask: async () => proposed,
+    ask: async (_method, path) => (path === "proposals/" ? proposed : null), // nobody snaps here
     frames: async () => ({ frames: empty }),
     blob: () => Promise.reject(new Error("no pictures here")),
   };

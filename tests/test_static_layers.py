@@ -21,6 +21,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "workbench/placing": {"base", "geometry", "truth", "views", "workbench/keys"},
     "workbench/people": {"base", "saving", "truth", "views", "workbench/keys"},
     "workbench/proposals": {"base", "truth", "views", "workbench/keys"},
+    "workbench/sheet": {"base", "truth", "views", "workbench/keys"},
     "workbench/frames": {"base", "truth", "saving", "views", "workbench/keys"},
     "workbench/warnings": {"base", "truth", "views"},
     "workbench/comments": {"base", "truth", "views"},

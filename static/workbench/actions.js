@@ -16,6 +16,17 @@ export class Actions {
     Object.assign(this._table, table);
   }
 
+  /**
+   * Rows that mean something else at times: `otherwise` does what they did before.
+   * @param {Record<string, (otherwise: () => unknown, event: KeyboardEvent|null) => unknown>} table
+   */
+  around(table) {
+    for (const [id, row] of Object.entries(table)) {
+      const before = this._table[id];
+      this._table[id] = (event) => row(() => before?.(event), event);
+    }
+  }
+
   /** @param {string} id @param {KeyboardEvent|null} [event] of a key; a button has none */
   perform(id, event = null) {
     this._table[id]?.(event);

@@ -106,7 +106,9 @@ export async function buildWorkbench(root, session, { mode, home }) {
   actions.use(chooseViews(root, views, page));
   showPaths(session.store, page);
   showFilmstrip(timeline, notices, { ...session, navigation, panes, settings });
-  if (scene.proposed) propose(session, { ...page, ...placing, panel: panel.element, perform, actions, intents });
+  const parts = { ...page, ...placing, panel: panel.element, perform, actions, intents };
+  const proposing = scene.proposed ? propose(session, parts) : Promise.resolve(null);
+  actions.use(sideBySide(session, { ...parts, proposing }));
   if (mode !== "tutorial") addForWork(panel, session, page, { actions, perform, identity, heads, guard });
   document.dispatchEvent(new CustomEvent("built", { detail: { panel, ...session, ...page } }));
   watch(session, panes, notices);
@@ -162,11 +164,23 @@ function fillTable(actions, session, page, parts) {
 /**
  * People whom programs propose, drawn over the views; where they do not arrive the page works as if there were none.
  * @param {Session} session @param {import("./proposals/start.js").Page} page
+ * @returns {ReturnType<typeof import("./proposals/start.js").startProposals>}
  */
-function propose(session, page) {
+async function propose(session, page) {
   /** @param {typeof import("./proposals/start.js")} part */
   const make = ({ startProposals }) => startProposals(session, page);
-  fetched(page.notices, import.meta.resolve("./proposals/start.js"), make)();
+  return fetched(page.notices, import.meta.resolve("./proposals/start.js"), make)();
+}
+
+/**
+ * Rows for the table of actions: everybody of a frame side by side.
+ * @param {Session} session @param {import("./sheet/start.js").Page} page @returns {ActionTable}
+ */
+function sideBySide(session, page) {
+  /** @param {typeof import("./sheet/start.js")} part */
+  const make = ({ startSheet }) => startSheet(session, page);
+  const sheet = fetched(page.notices, import.meta.resolve("./sheet/start.js"), make);
+  return { sheet: async () => (await sheet())?.toggle() };
 }
 
 /**

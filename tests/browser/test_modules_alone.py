@@ -10,10 +10,9 @@ from tests.conftest import REPOSITORY
 pytestmark = pytest.mark.browser
 
 STATIC = REPOSITORY / "static"
-STARTING = {path.relative_to(STATIC).as_posix() for path in STATIC.rglob("main.js")} | {
-    "workbench/start.js",
-    "workbench/comments/start.js",
-}  # what pages begin with
+STARTING = {
+    path.relative_to(STATIC).as_posix() for name in ("main.js", "start.js") for path in STATIC.rglob(name)
+}
 SCRIPTS = {
     f"site/{path.name}" for path in (STATIC / "site").glob("*.js")
 }  # of ordinary pages, run as they are

@@ -42,6 +42,7 @@ const TABLE = [
   ["validateAll", "people", ["Shift+Enter"], () => gettext("validate everybody: all yellow people stand right")],
   ["round", "people", ["a"], () => gettext("one by one, close up: right click places and goes on, Enter: it is right")],
   ["roundBack", "people", ["b"], () => gettext("the person before, when one by one")],
+  ["sheet", "people", ["Shift+s"], () => gettext("everybody of the frame side by side, close up; and back")],
   ["rename", "identity", ["r"], () => gettext("give the person another number")],
   ["split", "identity", ["x"], () => gettext("split: from here on it is somebody else, with a new number")],
   ["join", "identity", ["Shift+j"], () => gettext("join: another number is the same person")],

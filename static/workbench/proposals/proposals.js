@@ -13,6 +13,7 @@ import { Emitter } from "../../base/emitter.js";
 import { gettext, ngettext } from "../../base/messages.js";
 import { annotation, CARRIED, VALIDATED } from "../../truth/annotation.js";
 import { patch } from "../../truth/commands.js";
+import { standing, walking } from "./inheriting.js";
 import { openOnes, personsOf } from "./matching.js";
 
 const ORIGIN = "proposed";
@@ -32,6 +33,14 @@ export class Proposals extends Emitter {
     this._history = history;
     this._threshold = threshold;
     this._frames = new Map(answer.frames.map((frame) => [frame.number, frame.people]));
+    /** @type {Map<number, Map<number, Proposed>>} track → frame → the proposal there */
+    this._tracks = new Map();
+    for (const { number, people } of answer.frames) {
+      for (const one of people)
+        this._tracks.set(one.track, (this._tracks.get(one.track) ?? new Map()).set(number, one));
+    }
+    /** @type {WeakMap<Proposed, Proposed>} as it was proposed → as it was moved last; the same one as long as it stays there */
+    this._moved = new WeakMap();
     /** @type {Map<number, number>} person by track */
     this._known = new Map();
     for (const one of answer.frames.flatMap(({ people }) => people)) {
@@ -72,8 +81,53 @@ export class Proposals extends Emitter {
     const refused = new Set(
       [...this._refused.values()].flatMap(({ frame, position }) => (frame === number ? [position] : [])),
     );
-    const proposed = this._frames.get(number) ?? [];
+    const proposed = (this._frames.get(number) ?? []).map((one) => this._settled(number, one));
     return openOnes(proposed, this._store.people(number), refused, this._known, this.metres);
+  }
+
+  /**
+   * As the frames beside it show the same track: corrected as somebody who stands was corrected there, or between the
+   * steps of somebody who walks.
+   * @param {number} number @param {Proposed} one
+   */
+  _settled(number, one) {
+    const moved = this._standing(number, one) ?? this._walking(number, one);
+    if (this._moved.get(one)?.position !== moved.position) this._moved.set(one, moved);
+    return this._moved.get(one) ?? one;
+  }
+
+  /** By the nearest frame in which somebody has looked at the person. @param {number} number @param {Proposed} one */
+  _standing(number, one) {
+    const { numbers } = this._store;
+    const index = numbers.indexOf(number);
+    /** @param {number} other */
+    const away = (other) => Math.abs(numbers.indexOf(other) - index);
+    const [nearest] = [...(this._tracks.get(one.track)?.keys() ?? [])]
+      .filter((other) => other !== number && this._marked(other, one.track) !== null)
+      .sort((first, second) => away(first) - away(second));
+    const beside = this._beside(nearest, one.track);
+    return beside && standing(one, beside, this._scene);
+  }
+
+  /** @param {number} number @param {Proposed} one */
+  _walking(number, one) {
+    const [earlier, later] = [-1, 1].map((offset) => this._store.neighbour(offset, number));
+    if (earlier === undefined || later === undefined || number - earlier !== later - number) return one;
+    const [before, after] = [earlier, later].map((other) => this._beside(other, one.track));
+    return before && after ? walking(one, before, after, this._scene) : one;
+  }
+
+  /** @param {number} number @param {number} track @returns {import("./inheriting.js").Beside|null} */
+  _beside(number, track) {
+    const proposal = this._tracks.get(track)?.get(number);
+    return proposal ? { proposal, marked: this._marked(number, track) } : null;
+  }
+
+  /** Where an annotator has validated whoever the track is of. @param {number} number @param {number} track */
+  _marked(number, track) {
+    const person = this._known.get(track);
+    const one = person === undefined ? undefined : this._store.person(person, number);
+    return one?.state === VALIDATED ? one.position : null;
   }
 
   /** Those taken for real. */
@@ -123,16 +177,32 @@ export class Proposals extends Emitter {
     this._history.run({ ...patch(this._store, gettext("refuse a proposal"), []), refuses });
   }
 
-  /** @param {Proposed[]} chosen @param {import("../../truth/annotation.js").State} state @param {string} label */
-  _take(chosen, state, label) {
-    const persons = personsOf(chosen, this._store.people(), this._known, this.metres);
-    const edits = chosen.map((one) => {
+  /**
+   * Whom each of them is of, as far as that is known; those who would be somebody new are not in the map.
+   * @param {Proposed[]} chosen
+   */
+  personsOf(chosen) {
+    return personsOf(chosen, this._store.people(), this._known, this.metres);
+  }
+
+  /**
+   * What makes people of them, for a step that does more than that.
+   * @param {Proposed[]} chosen @param {import("../../truth/annotation.js").State} state
+   */
+  edits(chosen, state) {
+    const persons = this.personsOf(chosen);
+    return chosen.map((one) => {
       const person = persons.get(one) ?? this._store.takePerson();
       if (!this._known.has(one.track)) this._known.set(one.track, person);
       const { position, height, radius } = one;
       const after = annotation({ person, position, state, origin: ORIGIN, height, radius });
       return { frame: this._store.current, person, after };
     });
+  }
+
+  /** @param {Proposed[]} chosen @param {import("../../truth/annotation.js").State} state @param {string} label */
+  _take(chosen, state, label) {
+    const edits = this.edits(chosen, state);
     const select = edits.length === 1 ? edits[0].person : undefined;
     this._history.run(patch(this._store, label, edits, { select }));
   }

@@ -33,11 +33,14 @@ const KEYS = [
   ["doubtful", "people", ["Shift+a"], () => gettext("one by one, close up, through the doubtful proposals")],
 ];
 
-/** @param {Session} session @param {Page} page */
+/**
+ * @param {Session} session @param {Page} page
+ * @returns {Promise<{proposals: Proposals, snapping: Snapping}|null>} null: they could not be had
+ */
 export async function startProposals(session, page) {
   /** @type {import("../../base/answers.js").ProposalsAnswer|null} */
   const answer = await session.api.ask("GET", "proposals/").catch(console.warn);
-  if (!answer) return; // who is proposed is a help, not a condition
+  if (!answer) return null; // who is proposed is a help, not a condition
   const { panes, notices, panel, perform, guard, settings, actions } = page;
   const proposals = new Proposals(session, answer, stored() ?? answer.threshold);
   const acting = new ProposalActions({
@@ -57,6 +60,7 @@ export async function startProposals(session, page) {
   listen(page.intents, acting);
   doubtfulFirst(page.queue, session.store, answer);
   panel.append(new ProposalPanel({ proposals, perform, remember }).element);
+  return { proposals, snapping };
 }
 
 /**
