@@ -110,11 +110,10 @@ def test_a_point_that_is_not_finite_is_refused() -> None:
 def test_views_that_are_all_straight_on_give_no_lens_that_is_trusted() -> None:
     placed = [Placement(np.zeros(3), np.array([-0.1, -0.06, 0.4 + 0.05 * step])) for step in range(8)]
     seen = [exact_view(f"{number}", placement, noise=0.2) for number, placement in enumerate(placed)]
-    try:
-        found = solve_lens(seen, SIZE)
-    except LensError:
-        return
-    assert judge(found).word is Word.DO_NOT_USE
+    verdict = judge(solve_lens(seen, SIZE))
+    assert verdict.word is Word.DO_NOT_USE
+    assert "from nearly one direction" in verdict.reasons[0].text
+    assert "turned 30 to 45°" in verdict.next_step
 
 
 def test_a_lens_that_folds_inside_the_picture_is_known_by_its_reach() -> None:

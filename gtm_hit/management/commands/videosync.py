@@ -69,7 +69,7 @@ class Command(BaseCommand):
             draft = drafts.redo(draft.pk, draft.revision)
         if options["guess"]:
             progress = ProgressLine(self.stderr)
-            job.make_guess(draft, progress)
+            job.keep(draft, job.make_guess(draft, progress))
             progress.finish()
             draft = drafts.take_guess(draft.pk, draft.revision)
         if options["set"]:

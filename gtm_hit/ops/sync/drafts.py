@@ -42,8 +42,13 @@ def open_draft(source: sources.Source, user: User | None = None) -> VideoSync:
             draft = VideoSync.objects.create(source=source.key, facts=facts, created_by=user, position=0)
             _add(draft, State(tuple(_first_clock(file) for file in files)))
         elif draft.facts != facts:
+            state = _with_files(current(draft), files)
+            if [clock.file for clock in state.clocks] != [each["file"] for each in draft.facts]:
+                # What was before is of other videos: nothing could be undone to.
+                draft.states.all().delete()
+                draft.position = 0
             draft.facts = facts
-            _add(draft, _with_files(current(draft), files))
+            _add(draft, state)
     return draft
 
 

@@ -31,13 +31,20 @@ def run(mine: queue.Run) -> dict[str, Any]:
     if draft is None:
         raise queue.JobError(f"{mine.job.parameters['source']} is no longer there.")
     try:
-        return {"sync": draft.pk, **make_guess(draft, steps(mine))}
+        found = make_guess(draft, steps(mine))
     except SyncRefused as error:
         raise queue.JobError(str(error)) from error
+    with mine.holding(1, 1):
+        keep(draft, found)
+    return {"sync": draft.pk, **found}
+
+
+def keep(draft: VideoSync, found: dict[str, Any]) -> None:
+    VideoSync.objects.filter(pk=draft.pk).update(guess=found)
 
 
 def make_guess(draft: VideoSync, progress: Progress) -> dict[str, Any]:
-    """Raises SyncRefused, and keeps the guess there was."""
+    """What `keep` keeps. Raises SyncRefused."""
     source = sources.source(draft.source)
     if source is None:
         raise SyncRefused(f"{draft.source} is no longer there.")
@@ -47,5 +54,4 @@ def make_guess(draft: VideoSync, progress: Progress) -> dict[str, Any]:
     result = guess(videos, calibrations if calibrations.exists() else None, progress=progress).as_json()
     for place, clock in zip(result["places"], clocks, strict=True):
         place["file"] = clock.file
-    VideoSync.objects.filter(pk=draft.pk).update(guess=result)
     return result

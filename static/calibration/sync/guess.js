@@ -96,8 +96,9 @@ export class Guessing {
       this._problem || `First guess. ${told ?? ""}`,
     );
     const taken = this.isTaken ? [element("b", { className: "good" }, "In place")] : [];
-    const take = button(this.isTaken ? "Take it over again" : "Take it over", "T", () => this.take());
-    take.classList.toggle("primary", !this.isTaken);
+    const untouched = this._store.clocks.every(({ offset }) => offset === 0);
+    const take = button(untouched ? "Take it over" : "Take it over again", "T", () => this.take());
+    take.classList.toggle("primary", untouched && !this.isTaken);
     return [...taken, take, again, words];
   }
 

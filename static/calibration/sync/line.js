@@ -9,7 +9,7 @@ import { clockTime, inPictures, rate, signed } from "./words.js";
  */
 
 const SURE = { sure: "sure", likely: "likely, look closely", none: "not found" };
-const HEADS = ["", "Camera", "", "Offset, s", "Drift, ppm", "", "First guess"];
+const HEADS = ["", "Camera", "", "Offset, s", "Drift ppm", "", "First guess"];
 
 /** One row for each video: when it lasts on the time all share, and what its clock says. */
 export class TimeLine {
@@ -51,7 +51,8 @@ export class TimeLine {
   _drawRuler(from, until, share) {
     const steps = [0.1, 0.5, 1, 2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600];
     const step = steps.find((each) => (until - from) / each <= 8) ?? 7200;
-    const count = Math.floor(until / step) - Math.ceil(from / step) + 1;
+    const last = until - 0.03 * (until - from); // its label stays within
+    const count = Math.floor(last / step) - Math.ceil(from / step) + 1;
     const ticks = Array.from({ length: Math.max(count, 0) }, (_, at) => (Math.ceil(from / step) + at) * step);
     this._ruler.replaceChildren(
       ...ticks.map((time) => {

@@ -75,7 +75,11 @@ function tellSaved() {
 /** After a refusal: what the server has. */
 async function reload() {
   try {
-    store.replace(await server.ask("GET", ""));
+    const now = await server.ask("GET", "");
+    const files = (/** @type {import("./store.js").Draft} */ { clocks }) => clocks.map(({ file }) => file).join();
+    if (files(now) !== files(store.draft))
+      location.reload(); // the page is of other videos
+    else store.replace(now);
   } catch (error) {
     tell(error instanceof Error ? error.message : String(error));
   }
