@@ -65,6 +65,16 @@ class CheckCameraShape(serializers.Serializer[Any]):
     lacks = LackShape(allow_null=True, help_text="the step it needs at the desk; null: none")
 
 
+class PlainKeptShape(serializers.Serializer[Any]):
+    name = serializers.CharField()
+    use = serializers.ChoiceField(choices=KeptPoint.Use.choices)
+    clicks = SeenSerializer(many=True)
+
+
+class KeptShape(StepsShape):
+    kept = PlainKeptShape(many=True)
+
+
 class KeptClickShape(serializers.Serializer[Any]):
     camera = serializers.CharField()
     x = serializers.FloatField(help_text="pixels")
@@ -125,6 +135,14 @@ class Check(DeskView):
 
 
 class KeptPoints(DeskView):
+    @extend_schema(
+        operation_id="kept_points",
+        summary="Kept points with their clicks, without figures",
+        responses=answers(200, KeptShape, READS),
+    )
+    def get(self, request: Request, desk: str) -> Response:
+        return Response(checks.points(desk_or_404(request, desk)))
+
     @extend_schema(
         operation_id="keep_point",
         summary="Keep a point with its clicks",
