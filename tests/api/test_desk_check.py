@@ -18,7 +18,7 @@ CLICKS = [{"camera": each.camera, "x": each.x, "y": each.y} for each in true_cli
 
 
 @pytest.fixture
-def desk() -> Desk:
+def desk(db: None) -> Desk:
     return calibrated_desk()
 
 
