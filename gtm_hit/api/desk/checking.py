@@ -15,9 +15,9 @@ from gtm_hit.api.common.refusals import valid
 from gtm_hit.api.common.staff import READS, WRITES, answers, caller
 from gtm_hit.api.desk.common import DeskFileParser, DeskView, desk_or_404, told
 from gtm_hit.api.desk.ground import PixelSerializer, StepsShape
-from gtm_hit.calibration.kept_points import SeenAt
 from gtm_hit.models import KeptPoint
 from gtm_hit.ops.desk import checks, kept
+from gtm_hit.ops.desk.kept import SeenAt
 
 USE_WORDS = "a test point is given to no solve"
 
