@@ -12,8 +12,9 @@ from django.core.files.storage import default_storage
 from gtm_hit.models import Assignment, BoardPicture, Dataset, Job, Layer, ProposalRun, Release
 from gtm_hit.ops.access import granting
 from gtm_hit.ops.access.roles import Role
-from gtm_hit.ops.desk import desks
+from gtm_hit.ops.desk import desks, kept
 from gtm_hit.ops.desk import points as desk_points
+from gtm_hit.ops.desk.kept import SeenAt
 from gtm_hit.ops.exports import exporting
 from gtm_hit.ops.ground import grid_files
 from gtm_hit.ops.jobs import queue
@@ -94,6 +95,7 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
         "lens/<str:camera>/<slug:what>": "lens/C1/choose",
         "pictures/<int:picture>": f"pictures/{board_picture.pk}",
         "clicks/<str:point>": "clicks/A1",
+        "clicks/<str:camera>": "clicks/C1",
         "named/<str:point>": "named/A1",
         "pictures/(?P<digest>[0-9a-f]{64})": f"pictures/{picture}",
         "proposals/<int:number>": f"proposals/{run.pk}",
@@ -126,6 +128,7 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
 def desk_of(dataset: Dataset, slug: str, picture: str) -> BoardPicture:
     made = desks.make(slug, dataset=dataset)
     desk_points.put(made, "A1", 0.0, 0.0)
+    kept.keep(made, [SeenAt(each.name, 1.0, 1.0) for each in made.cameras.all()], "test", "A1")
     camera = made.cameras.all()[0]
     values = {"light_digest": picture, "full_digest": picture, "width": 1920, "height": 1080}
     return BoardPicture.objects.create(camera=camera, name="board.png", source_digest=picture, **values)

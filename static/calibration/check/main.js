@@ -12,7 +12,7 @@ import { Store } from "./store.js";
 
 const page = required(document, "[data-check]", HTMLElement);
 const given = pageJson("check");
-const desk = new DeskPage(page, given.api, "check", "check/");
+const desk = new DeskPage(page, given.api, "check", "kept/");
 const part = (/** @type {string} */ name) => desk.part(name);
 const store = new Store(given.check, desk.saver);
 const magnifier = new Magnifier();
