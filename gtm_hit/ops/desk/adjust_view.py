@@ -9,7 +9,7 @@ from gtm_hit.models import Desk, DeskAdjustment, DeskCamera, Image
 from gtm_hit.ops.desk import adjust_clicks, adjust_decisions, adjust_inputs, adjust_results, edits
 from gtm_hit.ops.desk.adjust_choices import Choices
 from gtm_hit.ops.desk.adjust_inputs import FEWEST
-from gtm_hit.ops.desk.adjust_job import refuse_too_few
+from gtm_hit.ops.desk.adjust_solving import refuse_too_few
 from gtm_hit.ops.desk.errors import DeskError
 
 HALF = 24  # pixels around a click in its thumbnail, at least

@@ -95,7 +95,9 @@ def adjust_step(desk: Desk) -> Step:
         told = f"By result {used.number}."
         return Step(Verdict.USABLE if since else Verdict.GOOD, " ".join([told, *since]))
     if shared.enough:
-        return Step(Verdict.MISSING, f"Not adjusted yet; {shared.free} points are seen by two cameras or more.")
+        return Step(
+            Verdict.MISSING, f"Not adjusted yet; {shared.free} points are seen by two cameras or more."
+        )
     least = adjust_inputs.FEWEST
     return Step(Verdict.USABLE, f"Nothing to adjust: fewer than {least} shared points. It can go without.")
 

@@ -128,8 +128,16 @@ def _files(desk: Desk) -> Iterator[tuple[str, bytes]]:
 def _of_result(desk: Desk, used: adjust_results.InUse) -> dict[str, Any]:
     found = adjust_results.result_of(desk, used.number)
     told: dict[str, Any] = found.report or {}
-    figures = {name: told.get(name) for name in ("cost", "median_px", "measured_after", "hold_out", "monotone")}
-    return {"number": found.number, "inputs": found.of, "choices": found.choices, "ended": used.ended, **figures}
+    figures = {
+        name: told.get(name) for name in ("cost", "median_px", "measured_after", "hold_out", "monotone")
+    }
+    return {
+        "number": found.number,
+        "inputs": found.of,
+        "choices": found.choices,
+        "ended": used.ended,
+        **figures,
+    }
 
 
 def _of_camera(row: DeskCamera) -> dict[str, Any]:

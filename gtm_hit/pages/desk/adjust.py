@@ -63,9 +63,7 @@ class AdjustForm(forms.Form):
 
 class ClickFileForm(forms.Form):
     file = forms.FileField(label=gettext_lazy("A zip of CAMERA/FRAME.pos, or a ba_problem.txt"))
-    unit = forms.ChoiceField(
-        label=gettext_lazy("Unit of a ba_problem.txt"), choices=UNITS[1:], initial="cm"
-    )
+    unit = forms.ChoiceField(label=gettext_lazy("Unit of a ba_problem.txt"), choices=UNITS[1:], initial="cm")
 
 
 @require_http_methods(["GET", "HEAD", "POST"])
