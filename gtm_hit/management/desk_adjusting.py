@@ -39,7 +39,12 @@ def add_arguments(parser: ArgumentParser) -> None:
         help="with --adjust: what of the lenses may move (%(default)s: held near those of the lens step)",
     )
     parser.add_argument(
-        "--turn", type=float, default=Choices.turn, metavar="PX", help="a miss beyond it counts less (1)"
+        "--huber",
+        dest="turn",
+        type=float,
+        default=Choices.turn,
+        metavar="PX",
+        help="a miss beyond it counts less (1)",
     )
     parser.add_argument("--ground-weight", type=float, help="of a click on a measured point")
     parser.add_argument(

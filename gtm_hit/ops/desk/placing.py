@@ -54,8 +54,8 @@ def cautions(desk: Desk) -> list[str]:
                 told.append(f"The {what} of {each.name} should not be used: {step.words}")
     if ended := adjust_results.in_use(desk).ended:
         told.append(
-            f"Lens or clicks of {', '.join(ended)} changed after adjusting, so they stand by themselves while "
-            "the others stand as they were adjusted. Adjust again."
+            f"Lens or clicks of {', '.join(ended)} changed after adjusting: they stand by themselves, the "
+            "others as they were adjusted. Adjust again."
         )
     return told
 
