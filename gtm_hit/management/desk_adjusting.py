@@ -14,7 +14,14 @@ from gtm_hit.calibration.adjustment.settings import Variant
 from gtm_hit.formats.calibration.pos_file import Numbering
 from gtm_hit.formats.files import read_source, write_bytes
 from gtm_hit.models import Desk, DeskAdjustment
-from gtm_hit.ops.desk import adjust_choices, adjust_files, adjust_job, adjust_results, adjust_solving
+from gtm_hit.ops.desk import (
+    adjust_choices,
+    adjust_decisions,
+    adjust_files,
+    adjust_job,
+    adjust_results,
+    adjust_solving,
+)
 from gtm_hit.ops.desk.adjust_choices import Choices
 
 MOST_BYTES = 200_000_000
@@ -31,6 +38,9 @@ def add_arguments(parser: ArgumentParser) -> None:
         "CAMERA/FRAME.pos",
     )
     parser.add_argument("--feet", choices=sorted(FEET), help="the number .pos files give feet")
+    three: Any = {"nargs": 3, "action": "append", "default": [], "metavar": ("SOURCE", "POINT", "CAMERA")}
+    parser.add_argument("--drop", help="do not adjust with this click; SOURCE is ground or kept", **three)
+    parser.add_argument("--keep", help="this click is right, however far off", **three)
     parser.add_argument("--adjust", action="store_true", help="adjust all cameras and points at once")
     parser.add_argument(
         "--variant",
@@ -65,6 +75,9 @@ def work(desk: Desk, options: dict[str, Any], say: Callable[[str], object]) -> N
     """Raises DeskError, FormatError."""
     if options["click_file"]:
         _take(desk, options["click_file"], options["unit"] or "cm", FEET.get(options["feet"]))
+    for decision in ("drop", "keep"):
+        for source, point, camera in options[decision]:
+            adjust_decisions.decide(desk, source, point, camera, decision)
     choices = _choices(options)
     if options["adjust"]:
         found = _adjusted(desk, choices, say)

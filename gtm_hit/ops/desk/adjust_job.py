@@ -6,6 +6,7 @@ from typing import Any
 
 from django.contrib.auth.models import User
 from django.db.models import QuerySet
+from django.utils import timezone
 
 from gtm_hit.calibration.adjustment.adjusting import Step
 from gtm_hit.models import Desk, Job
@@ -38,9 +39,12 @@ def run(mine: queue.Run) -> dict[str, Any]:
     def progress(step: Step) -> None:
         mine.report(0, 0, in_words(step))
 
+    def hold() -> None:
+        mine.keep(heartbeat_at=timezone.now())  # raises where another worker has the job by now
+
     choices = Choices.of_json(parameters["choices"])
     try:
-        found = adjust_solving.solve(desk, choices, mine.job.created_by, progress, mine.keep)
+        found = adjust_solving.solve(desk, choices, mine.job.created_by, progress, hold)
     except DeskError as error:
         raise queue.JobError(str(error)) from error
     return {"number": found.number}

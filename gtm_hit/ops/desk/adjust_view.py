@@ -42,6 +42,11 @@ class WorstClick:
         return max(HALF, 0.75 * away)
 
     @property
+    def mark(self) -> float:
+        """By how much marks are scaled to look the same in all pieces."""
+        return self.half / HALF / 2
+
+    @property
     def view_box(self) -> str:
         half = self.half
         left = (self.x + self.projected_x) / 2 - 1.5 * half

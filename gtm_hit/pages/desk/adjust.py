@@ -32,6 +32,9 @@ from gtm_hit.pages.common.uploads import takes_uploads
 from gtm_hit.pages.desk.common import desk_or_404, frame, tried
 from gtm_hit.pages.desk.ground import UNITS
 
+DECISIONS = [("keep", gettext_lazy("Keep")), ("drop", gettext_lazy("Drop"))]
+CLICK = ("source", "point", "camera", "decision")
+
 
 class AdjustForm(forms.Form):
     variant = forms.ChoiceField(label=gettext_lazy("Lenses"), choices=adjust_choices.VARIANTS)
@@ -88,8 +91,8 @@ def change_adjust(request: StaffRequest, desk: str, what: str) -> HttpResponse:
     number = given.get("number", "")
 
     def decide() -> None:
-        click = [given.get(name, "") for name in ("source", "point", "camera", "decision")]
-        adjust_decisions.decide(found, *click, user=user)
+        source, point, camera, decision = (given.get(name, "") for name in CLICK)
+        adjust_decisions.decide(found, source, point, camera, decision, user)
 
     operations = {
         "undo": lambda: edits.undo(found, adjust_results.PAGE),
@@ -170,14 +173,39 @@ def _context(request: StaffRequest, desk: Desk, form: AdjustForm) -> dict[str, A
         "form": form,
         "file_form": ClickFileForm(),
         "job": adjust_job.jobs_of(desk).first(),
-        "matrix": list(zip(shared["cameras"], shared["points"], shared["measured"], strict=True)),
+        "matrix": _matrix(shared),
         "names": shared["cameras"],
         "free": shared["free"],
         "result": result,
         "report": report,
-        "rows": [(each, adjust_view.far_shifts(each)) for each in report["cameras"]] if report else [],
+        "rows": [_row(each) for each in report["cameras"]] if report else [],
+        "feet_cm": 100 * report["feet"]["median"] if report and report["feet"] else None,
+        "decisions": DECISIONS,
         "worst": adjust_view.worst(desk, result) if result else [],
         "since": adjust_results.changes(desk, result) if result else [],
+    }
+
+
+def _matrix(shared: dict[str, Any]) -> list[dict[str, Any]]:
+    rows = zip(shared["cameras"], shared["points"], shared["measured"], strict=True)
+    return [
+        {
+            "name": name,
+            "cells": [{"count": count, "self": place == number} for place, count in enumerate(counts)],
+            "measured": measured,
+        }
+        for number, (name, counts, measured) in enumerate(rows)
+    ]
+
+
+def _row(camera: dict[str, Any]) -> dict[str, Any]:
+    """Lengths as the page speaks of them: centimetres."""
+    sigma = camera["centre_sigma"]
+    return {
+        **camera,
+        "moved_cm": 100 * camera["moved"],
+        "sigma_cm": None if sigma is None else 100 * sigma,
+        "far": adjust_view.far_shifts(camera),
     }
 
 
