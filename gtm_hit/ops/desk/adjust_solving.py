@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from itertools import count
 
 from django.contrib.auth.models import User
 from django.db import transaction
@@ -97,8 +98,10 @@ def _adjusted(
 
 
 def _after(seconds: float) -> Callable[[], bool]:
+    """Not before one step is made, however long it takes to begin: each turn leads on."""
     until = time.monotonic() + seconds
-    return lambda: time.monotonic() > until
+    asked = count()
+    return lambda: next(asked) > 0 and time.monotonic() > until
 
 
 def _finish(row: DeskAdjustment, inputs: Inputs, result: Adjustment, hold: Hold) -> None:
