@@ -156,6 +156,11 @@ def far_shifts(camera: dict[str, Any]) -> list[str]:
     ]
 
 
+def farthest_shift(camera: dict[str, Any]) -> float:
+    """σ of the lens step by which the number of the lens went that went farthest."""
+    return max((abs(shift["shift"] or 0.0) for shift in camera["lens"].values()), default=0.0)
+
+
 def _picture(desk: Desk, camera: DeskCamera, click: adjust_clicks.Clicked | None) -> tuple[str, bool]:
     """Digest of the picture in which it was clicked, and whether the desk has that itself."""
     if click is None or click.source in {adjust_clicks.GROUND, adjust_clicks.KEPT}:

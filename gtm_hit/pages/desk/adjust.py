@@ -206,6 +206,7 @@ def _row(camera: dict[str, Any]) -> dict[str, Any]:
         "moved_cm": 100 * camera["moved"],
         "sigma_cm": None if sigma is None else 100 * sigma,
         "far": adjust_view.far_shifts(camera),
+        "farthest": adjust_view.farthest_shift(camera),
     }
 
 
