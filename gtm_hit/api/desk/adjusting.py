@@ -48,7 +48,7 @@ class AdjustSerializer(serializers.Serializer[Any]):
     )
 
 
-class DecisionSerializer(serializers.Serializer[Any]):
+class ClickDecisionSerializer(serializers.Serializer[Any]):
     source = serializers.CharField(  # type: ignore[assignment]
         max_length=64, help_text="ground, kept, or the digest of a file of clicks"
     )
@@ -205,12 +205,12 @@ class DecideClick(DeskView):
     @extend_schema(
         operation_id="decide_desk_click",
         summary="Say that a click far off is right, or is not to be adjusted with",
-        request=DecisionSerializer,
+        request=ClickDecisionSerializer,
         responses=answers(200, AdjustShape, WRITES),
     )
     def post(self, request: Request, desk: str) -> Response:
         found = desk_or_404(request, desk)
-        given = valid(DecisionSerializer(data=request.data))
+        given = valid(ClickDecisionSerializer(data=request.data))
         with told("point"):
             adjust_decisions.decide(found, **given, user=caller(request))
         return Response(adjust_view.whole(found))
