@@ -217,7 +217,7 @@ one_desk: list[URLPattern | URLResolver] = [
     path("cameras/<str:camera>/picture/", desk_ground.GroundPicture.as_view()),
     path("ground/", gzip_page(desk_ground.Ground.as_view())),
     path("kept.csv", desk_checking.KeptCsv.as_view()),
-    path("kept/", desk_checking.KeptPoints.as_view()),
+    path("kept/", gzip_page(desk_checking.KeptPoints.as_view())),
     path("kept/file/", desk_checking.KeptFile.as_view()),
     path("kept/named/<str:point>/", desk_checking.OneKeptPoint.as_view()),
     path("kept/named/<str:point>/clicks/<str:camera>/", desk_checking.KeptClickView.as_view()),

@@ -89,10 +89,15 @@ def spot(clicks: Sequence[Click], sigma: float = CLICK_SIGMA) -> Spot | None:
 
 def shown(camera: Camera, point: Floats) -> Floats:
     """(2,) pixel of a world point; NaN behind the camera and beyond the fold of its lens."""
-    right, down, depth = camera.rotation @ point + camera.tvec
-    if not depth * camera.facing > 0 or not np.hypot(right, down) / abs(depth) < fold(camera):
-        return np.full(2, np.nan)
-    return project(camera, point)[0]
+    return _all_shown(camera, point[None])[0]
+
+
+def _all_shown(camera: Camera, points: Floats) -> Floats:
+    """(N, 2) pixels of world points."""
+    right, down, depth = (points @ camera.rotation.T + camera.tvec).T
+    with np.errstate(all="ignore"):
+        seen = (depth * camera.facing > 0) & (np.hypot(right, down) / np.abs(depth) < fold(camera))
+    return np.where(seen[:, None], project(camera, points), np.nan)
 
 
 def fold(camera: Camera) -> float:
@@ -142,10 +147,10 @@ def _meeting(clicks: Sequence[Click]) -> Floats | None:
         after = _misses(clicks, here + move)
         if (after**2).sum() <= (misses**2).sum():  # NaN is not
             here, misses, damping = here + move, after, damping / 10
-            if np.abs(move).max() < CONVERGED:
-                break
         else:
             damping *= 10
+        if np.abs(move).max() < CONVERGED:
+            break
     return here
 
 
@@ -177,8 +182,10 @@ def _misses(clicks: Sequence[Click], point: Floats) -> Floats:
 
 def _slopes(clicks: Sequence[Click], point: Floats, misses: Floats) -> Floats:
     """(2 N, 3) how the misses change with the point."""
-    moved = [_misses(clicks, point + SMALL * axis) - misses for axis in np.eye(3)]
-    return np.stack([each.ravel() / SMALL for each in moved], axis=1)
+    moved = point + SMALL * np.eye(3)
+    here = misses + [(click.u, click.v) for click in clicks]
+    steps = [_all_shown(click.camera, moved) - pixel for click, pixel in zip(clicks, here, strict=True)]
+    return np.concatenate([each.T / SMALL for each in steps])
 
 
 def _doubtful(clicks: Sequence[Click], misses: Floats, sigma: float) -> list[int]:

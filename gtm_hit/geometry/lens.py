@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -71,7 +73,12 @@ def undistort(x: Floats, y: Floats, distortion: Floats, tilt: Floats | None = No
 
 def limit(distortion: Floats) -> float:
     """Radius in normalised units beyond which the radial model folds back; infinite for a sane lens."""
-    k1, k2, _, _, k3, k4, k5, k6 = padded(distortion)[:8].tolist()
+    return _limit(tuple(distortion.tolist()))
+
+
+@lru_cache(maxsize=1024)  # a solver asks for many lenses
+def _limit(coefficients: tuple[float, ...]) -> float:
+    k1, k2, _, _, k3, k4, k5, k6 = padded(np.array(coefficients))[:8].tolist()
     r2 = SEARCHED_RADII**2
     with np.errstate(all="ignore"):
         radial = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)))

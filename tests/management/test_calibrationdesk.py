@@ -11,6 +11,7 @@ from django.core.management.base import CommandError
 
 from gtm_hit.formats.calibration.cameras_json import load_cameras, save_cameras
 from gtm_hit.models import Desk
+from tests.check_scene import LAMP, calibrated_desk, true_clicks
 from tests.desk_scene import make_desk, seen
 
 pytestmark = pytest.mark.django_db
@@ -61,3 +62,19 @@ def test_a_broken_file_changes_nothing(tmp_path: Path) -> None:
     with pytest.raises(CommandError, match="line 2"):
         run("plaza", "--points", tmp_path / "points.csv", "--unit", "m")
     assert Desk.objects.get().points.count() == 15
+
+
+def test_kept_points_go_in_and_out_by_files_and_are_judged(tmp_path: Path) -> None:
+    desk = calibrated_desk()
+    lines = [f"lamp,{each.camera},{each.x},{each.y}" for each in true_clicks(LAMP)]
+    (tmp_path / "clicks.csv").write_text("\n".join(lines))
+    out = tmp_path / "kept.csv"
+    told = run("plaza", "--kept", tmp_path / "clicks.csv", "--kept-out", out)
+    assert "check           usable      1 test point: median 0.0 px" in told
+    found = json.loads(run("plaza", "--undo", "check", "--json"))
+    assert found["kept"] == [] and not desk.kept_points.exists()
+    found = json.loads(run("plaza", "--kept", out, "--json"))
+    assert found["kept"][0]["place"] == pytest.approx(LAMP, abs=1e-3)
+    assert found["summaries"]["test"]["clicks"] == 7
+    with pytest.raises(CommandError, match="a kept point lamp already"):
+        run("plaza", "--kept", out)

@@ -15,9 +15,9 @@ from gtm_hit.api.common.refusals import valid
 from gtm_hit.api.common.staff import READS, WRITES, answers, caller
 from gtm_hit.api.desk.common import DeskFileParser, DeskView, desk_or_404, told
 from gtm_hit.api.desk.ground import PixelSerializer, StepsShape
-from gtm_hit.calibration.kept_points import SeenAt
 from gtm_hit.models import KeptPoint
 from gtm_hit.ops.desk import checks, kept
+from gtm_hit.ops.desk.kept import SeenAt
 
 USE_WORDS = "a test point is given to no solve"
 
@@ -63,6 +63,16 @@ class CheckCameraShape(serializers.Serializer[Any]):
     height = serializers.IntegerField()
     placed = serializers.BooleanField(help_text="whether it is calibrated and takes part")
     lacks = LackShape(allow_null=True, help_text="the step it needs at the desk; null: none")
+
+
+class PlainKeptShape(serializers.Serializer[Any]):
+    name = serializers.CharField()
+    use = serializers.ChoiceField(choices=KeptPoint.Use.choices)
+    clicks = SeenSerializer(many=True)
+
+
+class KeptShape(StepsShape):
+    kept = PlainKeptShape(many=True)
 
 
 class KeptClickShape(serializers.Serializer[Any]):
@@ -125,6 +135,14 @@ class Check(DeskView):
 
 
 class KeptPoints(DeskView):
+    @extend_schema(
+        operation_id="kept_points",
+        summary="Kept points with their clicks, without figures",
+        responses=answers(200, KeptShape, READS),
+    )
+    def get(self, request: Request, desk: str) -> Response:
+        return Response(checks.points(desk_or_404(request, desk)))
+
     @extend_schema(
         operation_id="keep_point",
         summary="Keep a point with its clicks",

@@ -54,21 +54,26 @@ def shown(desk: Desk) -> dict[str, Any]:
     in_place = _in_place(desk)
     return {
         "cameras": [_camera(row, in_place.get(row.name)) for row in desk.cameras.all()],
-        "kept": [_plain(row) for row in kept.all_kept(desk)],
-        **asdict(edits.steps(desk, kept.PAGE)),
+        **points(desk),
     }
+
+
+def points(desk: Desk) -> dict[str, Any]:
+    """Kept points without figures, which take a second for hundreds of them."""
+    plain = [_plain(row) for row in kept.all_kept(desk)]
+    return {"kept": plain, **asdict(edits.steps(desk, kept.PAGE))}
 
 
 def whole(desk: Desk, against: Against = Against.DESK) -> dict[str, Any]:
     """Kept points with their figures, and those of all together."""
     cameras = cameras_of(desk, against)
-    points = [(row, figures(row, cameras)) for row in kept.all_kept(desk)]
+    told = [(row, figures(row, cameras)) for row in kept.all_kept(desk)]
     return {
         "against": against.value,
         "cameras": [_without_numbers(_camera(row, None), cameras) for row in desk.cameras.all()],
-        "kept": [_told(row, found) for row, found in points],
+        "kept": [_told(row, found) for row, found in told],
         "summaries": {
-            use: asdict(summary(found for row, found in points if row.use == use)) for use in kept.Use.values
+            use: asdict(summary(found for row, found in told if row.use == use)) for use in kept.Use.values
         },
         **asdict(edits.steps(desk, kept.PAGE)),
     }

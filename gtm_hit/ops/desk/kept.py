@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from django.contrib.auth.models import User
 from django.db import transaction
 
-from gtm_hit.calibration.kept_points import SeenAt
+from gtm_hit.calibration.kept_points import SeenAt as SeenAt
 from gtm_hit.formats.calibration.clicks import ThingClick, parse_clicks, write_clicks
 from gtm_hit.formats.dataset_folder import natural_key
 from gtm_hit.models import Desk, DeskCamera, KeptPoint

@@ -20,6 +20,8 @@ export class List {
   constructor(root, store) {
     this._store = store;
     this.filter = "";
+    /** @type {string|null} the point that was selected when the list was drawn last */
+    this._shown = null;
     this._rows = element("tbody");
     this._empty = element("p", { className: "muted small" });
     const heads = ["Point", "kept as", "views", "worst px"];
@@ -41,7 +43,9 @@ export class List {
       ? "None of this kind."
       : "None yet: click something in two views, then T or K.";
     this._rows.replaceChildren(...listed.map((point) => this._row(point, point.name === selected)));
-    this._rows.querySelector("[aria-selected=true]")?.scrollIntoView({ block: "nearest" });
+    if (selected !== this._shown)
+      this._rows.querySelector("[aria-selected=true]")?.scrollIntoView({ block: "nearest" });
+    this._shown = selected;
   }
 
   /** @param {KeptPoint} point @param {boolean} selected */

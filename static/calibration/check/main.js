@@ -12,7 +12,7 @@ import { Store } from "./store.js";
 
 const page = required(document, "[data-check]", HTMLElement);
 const given = pageJson("check");
-const desk = new DeskPage(page, given.api, "check", "check/");
+const desk = new DeskPage(page, given.api, "check", "kept/");
 const part = (/** @type {string} */ name) => desk.part(name);
 const store = new Store(given.check, desk.saver);
 const magnifier = new Magnifier();
@@ -28,24 +28,24 @@ const painter = { paint };
 
 function paint() {
   const { point } = store;
+  layOut(); // before drawing: marks are as large on the screen whatever the size of their pane
   panes.forEach((pane, index) => pane.draw(store, index === store.active, view.lines));
-  layOut();
   magnify();
   panel.draw();
   list.draw();
   drawSummary(part("summary"), store);
   desk.showSteps(store.steps);
-  setText(part("now"), point ? point.name : store.draft.empty ? "–" : "not kept yet");
+  setText(part("now"), point ? point.name : store.draft.empty ? "–" : "new");
   setText(part("hint"), hint());
   part("of-point").hidden = !point;
   if (document.activeElement !== name) name.value = point?.name ?? "";
   for (const [use, words] of [
-    ["test", point ? "Make it a test point" : "Keep as test point"],
-    ["correspondence", point ? "Make it a correspondence" : "Keep as correspondence"],
+    ["test", "test point"],
+    ["correspondence", "correspondence"],
   ]) {
     const button = required(page, `[data-do=${use}]`, HTMLButtonElement);
     button.disabled = point ? point.use === use : Object.keys(store.draft.clicks).length < 2;
-    setText(required(button, "span", HTMLElement), words);
+    button.title = point ? `${point.name} becomes a ${words}` : `Keep it as a ${words}`;
   }
 }
 
@@ -62,14 +62,10 @@ function hint() {
 
 function layOut() {
   const grid = part("panes");
-  grid.style.setProperty("--columns", String(view.large ? Math.max(panes.length - 1, 1) : columns()));
+  const columns = view.large ? Math.max(panes.length - 1, 1) : Math.ceil(Math.sqrt(panes.length));
+  grid.style.setProperty("--columns", String(columns));
   grid.classList.toggle("has-large", view.large);
   panes.forEach((pane, index) => pane.element.classList.toggle("large", view.large && index === store.active));
-}
-
-/** Of two layouts the one with larger pictures is the squarer one. */
-function columns() {
-  return Math.ceil(Math.sqrt(panes.length));
 }
 
 function magnify() {
@@ -143,6 +139,7 @@ function choose(index) {
   return true;
 }
 
+part("magnifier").append(magnifier.element);
 listenToKeys({ actions, names, nudge, choose });
 listenToButtons(page, actions);
 

@@ -29,7 +29,7 @@ function polyline({ from, points, doubtful }, { width, height }, faint, unit) {
   if (near.length < 2) return [];
   const text = near.map(({ x, y }) => `${x.toFixed(2)},${y.toFixed(2)}`).join(" ");
   const kind = `epipolar${faint ? " faint" : ""}${doubtful ? " doubtful" : ""}`;
-  const at = inside[Math.floor(inside.length / 2)];
+  const at = faint && !doubtful ? undefined : inside[Math.floor(inside.length / 2)];
   const words = at
     ? [svg("text", { class: kind, x: at.x + 6 * unit, y: at.y - 6 * unit, "font-size": 11 * unit }, from)]
     : [];
