@@ -157,7 +157,7 @@ def adjusted(desk: Desk) -> None:
         of="0" * 64,
         choices=Choices().as_json(),
         inputs={"clicks": [], "measured": {}, "cameras": {}},
-        report={"cost": 1.0, "median_px": 1.0, "monotone": True, "worst": [], "cameras": []},
+        report={"cost": 1.0, "median_px": 1.0, "monotone": True, "feet": None, "worst": [], "cameras": []},
         cameras={},
     )
 
