@@ -159,6 +159,8 @@ SPECTACULAR_SETTINGS = {
         "OutboxKind": "gtm_hit.models.outbox.OutboxRow.Kind",
         "BoardKind": "gtm_hit.ops.desk.board_choices.KINDS",
         "LengthUnit": ["m", "cm", "mm"],
+        "AdjustVariant": "gtm_hit.ops.desk.adjust_choices.VARIANTS",
+        "ClickDecisionKind": "gtm_hit.models.desk.ClickDecision.Decision",
     },
 }
 

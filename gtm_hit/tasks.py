@@ -13,7 +13,7 @@ from gtm_hit.crowd.prolific import connect
 from gtm_hit.models import Job
 from gtm_hit.ops.calibration import job as calibration_job
 from gtm_hit.ops.datasets import job
-from gtm_hit.ops.desk import lens_job
+from gtm_hit.ops.desk import adjust_job, lens_job
 from gtm_hit.ops.exports import expiry, exporting
 from gtm_hit.ops.files import picture_cleanup, sources
 from gtm_hit.ops.jobs import queue
@@ -30,6 +30,7 @@ from gtm_hit.ops.sync import pictures as video_pictures
 from gtm_hit.ops.work import assignments
 
 OPERATIONS: dict[str, queue.Operation] = {
+    Job.Kind.ADJUST: adjust_job.run,
     Job.Kind.EXPORT_LAYER: exporting.run,
     Job.Kind.IMPORT_DATASET: job.run_import,
     Job.Kind.IMPORT_VIDEOS: job.run_videos,

@@ -8,7 +8,10 @@ from gtm_hit.admin.look_only import LookOnlyAdmin
 from gtm_hit.models import (
     BoardPicture,
     Click,
+    ClickDecision,
+    ClickFile,
     Desk,
+    DeskAdjustment,
     DeskCamera,
     DeskEdit,
     DeskPicture,
@@ -30,7 +33,7 @@ class DeskCameraAdmin(LookOnlyAdmin):
     list_display = ["desk", "index", "name", "width", "height"]
     list_select_related = ["desk"]
     search_fields = ["desk__slug", "name"]
-    exclude = ["lens_report", "pose_report"]
+    exclude = ["lens_report", "pose_report", "adjusted"]
 
 
 @admin.register(BoardPicture)
@@ -68,6 +71,30 @@ class KeptClickAdmin(LookOnlyAdmin):
     list_display = ["point", "camera", "x", "y"]
     list_select_related = ["point", "camera"]
     search_fields = ["point__name"]
+
+
+@admin.register(ClickFile)
+class ClickFileAdmin(LookOnlyAdmin):
+    list_display = ["desk", "name", "used"]
+    list_select_related = ["desk"]
+    search_fields = ["desk__slug", "name"]
+    exclude = ["points"]
+
+
+@admin.register(ClickDecision)
+class ClickDecisionAdmin(LookOnlyAdmin):
+    list_display = ["desk", "point", "camera", "decision"]
+    list_select_related = ["desk"]
+    list_filter = ["decision"]
+    search_fields = ["desk__slug", "point"]
+
+
+@admin.register(DeskAdjustment)
+class DeskAdjustmentAdmin(LookOnlyAdmin):
+    list_display = ["desk", "number", "created_by", "created_at"]
+    list_select_related = ["desk", "created_by"]
+    search_fields = ["desk__slug"]
+    exclude = ["inputs", "state", "report", "cameras"]
 
 
 @admin.register(DeskEdit)

@@ -31,6 +31,7 @@ from gtm_hit.api.common.authentication import BearerAuthentication, StaffMay, St
 from gtm_hit.api.common.docs import DocsView
 from gtm_hit.api.common.missing import MissingView
 from gtm_hit.api.datasets import importing, listing, videos
+from gtm_hit.api.desk import adjusting as desk_adjusting
 from gtm_hit.api.desk import boards, desks, lenses
 from gtm_hit.api.desk import checking as desk_checking
 from gtm_hit.api.desk import ground as desk_ground
@@ -191,6 +192,15 @@ one_dataset += [
 ]
 one_desk: list[URLPattern | URLResolver] = [
     path("", desks.OneDesk.as_view()),
+    path("adjust/", gzip_page(desk_adjusting.Adjust.as_view())),
+    path("adjust/ba_problem.txt", gzip_page(desk_adjusting.DeskProblemFile.as_view())),
+    path("adjust/pos.zip", desk_adjusting.DeskPosFiles.as_view()),
+    path("adjust/decisions/", desk_adjusting.DecideClick.as_view()),
+    path("adjust/files/", desk_adjusting.ClickFiles.as_view()),
+    path("adjust/files/<str:digest>/", desk_adjusting.OneClickFile.as_view()),
+    path("adjust/leave/", desk_adjusting.LeaveAdjustment.as_view()),
+    path("adjust/results/<int:result>/", gzip_page(desk_adjusting.OneAdjustment.as_view())),
+    path("adjust/results/<int:result>/use/", desk_adjusting.UseAdjustment.as_view()),
     path("cameras.json", desk_placing.DeskCamerasJson.as_view()),
     path("calibrations.zip", desk_placing.DeskFolder.as_view()),
     path("check/", gzip_page(desk_checking.Check.as_view())),

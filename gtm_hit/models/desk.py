@@ -49,6 +49,11 @@ class DeskCamera(models.Model):
     board = models.JSONField(null=True, blank=True, help_text="what was looked for in the pictures of boards")
     pose = models.JSONField(null=True, blank=True, help_text="rvec and tvec, metres, world to camera")
     pose_report = models.JSONField(default=dict, blank=True, help_text="residuals and findings")
+    adjusted = models.JSONField(
+        null=True,
+        blank=True,
+        help_text="lens and pose of the adjustment in use, and those it began from: others end its use",
+    )
 
     class Meta:
         ordering = ["desk", "index"]
@@ -171,6 +176,81 @@ class KeptClick(models.Model):
 
     def __str__(self) -> str:
         return f"{self.point} in {self.camera}"
+
+
+class ClickFile(models.Model):
+    """Clicks out of a file, of things that several cameras see: feet and heads, or a problem's points.
+
+    The row stays when its use is undone, for it may be done again.
+    """
+
+    desk = models.ForeignKey(Desk, on_delete=models.CASCADE, related_name="click_files")
+    digest = models.CharField(max_length=64, help_text="SHA-256 of what was read")
+    name = models.CharField(max_length=200)
+    used = models.BooleanField(default=False, help_text="whether it is adjusted with")
+    points = models.JSONField(help_text="of each: name, frame, part (feet, head or none), clicks by camera")
+
+    class Meta:
+        ordering = ["desk", "pk"]
+        constraints = [models.UniqueConstraint(fields=["desk", "digest"], name="click_file_once")]
+
+    def __str__(self) -> str:
+        return self.name
+
+
+class ClickDecision(models.Model):
+    """What somebody said of a click that an adjustment found far off. It is void once the click is moved."""
+
+    class Decision(models.TextChoices):
+        KEEP = "keep", "it is right"
+        DROP = "drop", "not adjusted with"
+
+    desk = models.ForeignKey(Desk, on_delete=models.CASCADE, related_name="click_decisions")
+    source = models.CharField(max_length=64, help_text="ground, kept, or the digest of a file of clicks")
+    point = models.CharField(max_length=200)
+    camera = models.CharField(max_length=80)
+    decision = models.CharField(max_length=4, choices=Decision.choices)
+    x = models.FloatField(help_text="pixels, where the click was then")
+    y = models.FloatField(help_text="pixels")
+
+    class Meta:
+        ordering = ["desk", "pk"]
+        constraints = [
+            models.UniqueConstraint(fields=["desk", "source", "point", "camera"], name="click_decision_once")
+        ]
+
+    def __str__(self) -> str:
+        return f"{self.point} in {self.camera}: {self.get_decision_display()}"
+
+
+class DeskAdjustment(models.Model):
+    """All cameras and points adjusted at once: as far as it has come, then what came out.
+
+    There is one for the same input, however often it is asked for, stopped and gone on with.
+    """
+
+    desk = models.ForeignKey(Desk, on_delete=models.CASCADE, related_name="adjustments")
+    number = models.PositiveIntegerField(help_text="from 1")
+    of = models.CharField(max_length=64, help_text="SHA-256 of all that it depends on")
+    choices = models.JSONField(help_text="variant, weights, and what was held")
+    inputs = models.JSONField(help_text="clicks, measured points and cameras that it began with")
+    state = models.JSONField(null=True, blank=True, help_text="where it has come to")
+    report = models.JSONField(null=True, blank=True, help_text="null: not finished")
+    cameras = models.JSONField(null=True, blank=True, help_text="lens and pose of each camera by name")
+    created_by = models.ForeignKey(
+        settings.AUTH_USER_MODEL, null=True, blank=True, on_delete=models.SET_NULL, related_name="+"
+    )
+    created_at = models.DateTimeField(auto_now_add=True)
+
+    class Meta:
+        ordering = ["desk", "-number"]
+        constraints = [
+            models.UniqueConstraint(fields=["desk", "number"], name="desk_adjustment_number_once"),
+            models.UniqueConstraint(fields=["desk", "of"], name="desk_adjustment_of_once"),
+        ]
+
+    def __str__(self) -> str:
+        return f"{self.desk}: adjustment {self.number}"
 
 
 class DeskEdit(models.Model):

@@ -25,6 +25,7 @@ from gtm_hit.pages.campaigns import rules as campaign_rules
 from gtm_hit.pages.campaigns import workers as campaign_workers
 from gtm_hit.pages.datasets import importing as dataset_imports
 from gtm_hit.pages.datasets import listing as datasets
+from gtm_hit.pages.desk import adjust as desk_adjust
 from gtm_hit.pages.desk import board as desk_board
 from gtm_hit.pages.desk import check as desk_check
 from gtm_hit.pages.desk import desks
@@ -61,6 +62,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *desk_ground.urlpatterns,
     *desk_lens.urlpatterns,
     *desk_board.urlpatterns,
+    *desk_adjust.urlpatterns,
     *desk_check.urlpatterns,
     *desk_place.urlpatterns,
     *api_tokens.urlpatterns,

@@ -9,11 +9,23 @@ from django.contrib.auth.models import User
 from django.core.files.base import ContentFile
 from django.core.files.storage import default_storage
 
-from gtm_hit.models import Assignment, BoardPicture, Dataset, Job, Layer, ProposalRun, Release
+from gtm_hit.models import (
+    Assignment,
+    BoardPicture,
+    ClickFile,
+    Dataset,
+    Desk,
+    DeskAdjustment,
+    Job,
+    Layer,
+    ProposalRun,
+    Release,
+)
 from gtm_hit.ops.access import granting
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.desk import desks, kept
 from gtm_hit.ops.desk import points as desk_points
+from gtm_hit.ops.desk.adjust_choices import Choices
 from gtm_hit.ops.desk.kept import SeenAt
 from gtm_hit.ops.exports import exporting
 from gtm_hit.ops.ground import grid_files
@@ -91,6 +103,9 @@ def fills_of(dataset: Dataset, assignment: Assignment, layer: Layer) -> dict[str
         "boards/<int:picture>": f"boards/{board_picture.pk}",
         BOARD: "calibration-board.svg?kind=chessboard&columns=9&rows=6&spacing=0.03",
         "cameras/<str:camera>": "cameras/C1",
+        "adjust/<slug:what>": "adjust/undo",
+        "files/<str:digest>": "files/0",
+        "results/<int:result>": "results/1",
         "lens/<str:camera>": "lens/C1",
         "lens/<str:camera>/<slug:what>": "lens/C1/choose",
         "pictures/<int:picture>": f"pictures/{board_picture.pk}",
@@ -130,8 +145,23 @@ def desk_of(dataset: Dataset, slug: str, picture: str) -> BoardPicture:
     desk_points.put(made, "A1", 0.0, 0.0)
     kept.keep(made, [SeenAt(each.name, 1.0, 1.0) for each in made.cameras.all()], "test", "A1")
     camera = made.cameras.all()[0]
+    adjusted(made)
     values = {"light_digest": picture, "full_digest": picture, "width": 1920, "height": 1080}
     return BoardPicture.objects.create(camera=camera, name="board.png", source_digest=picture, **values)
+
+
+def adjusted(desk: Desk) -> None:
+    """A result there is, of cameras that there are not, and a file of clicks."""
+    ClickFile.objects.create(desk=desk, digest="0", name="clicks.zip", used=True, points=[])
+    DeskAdjustment.objects.create(
+        desk=desk,
+        number=1,
+        of="0" * 64,
+        choices=Choices().as_json(),
+        inputs={"clicks": [], "measured": {}, "cameras": {}},
+        report={"cost": 1.0, "median_px": 1.0, "monotone": True, "feet": None, "worst": [], "cameras": []},
+        cameras={},
+    )
 
 
 def somebody(name: str, role: Role | None = None, dataset: Dataset | None = None) -> User:

@@ -65,11 +65,12 @@ class CameraStepsShape(serializers.Serializer[Any]):
 
 class WholeDeskShape(DeskShape):
     cameras = CameraStepsShape(many=True)
+    adjust = DeskStepShape(help_text="of all cameras together")
     check = DeskStepShape(help_text="what its test points tell")
     next_step = serializers.CharField(help_text="the one next step, in words")
 
     class Meta(DeskShape.Meta):
-        fields = [*DeskShape.Meta.fields, "cameras", "check", "next_step"]
+        fields = [*DeskShape.Meta.fields, "cameras", "adjust", "check", "next_step"]
 
 
 class NewDeskCameraSerializer(serializers.Serializer[Any]):
@@ -185,6 +186,7 @@ def _whole(desk: Desk) -> dict[str, Any]:
     return {
         **DeskShape(desk).data,
         "cameras": cameras,
+        "adjust": DeskStepShape(found.adjust).data,
         "check": check,
         "next_step": found.next_step.words,
     }

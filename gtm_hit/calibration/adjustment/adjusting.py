@@ -165,7 +165,7 @@ class _Run:
         notices = (*self.notices, *self.gauge.notices)
         if finished:
             checks.check_result(views, rows, points, self.seen)
-            notices += checks.doubts(rows, points, self.seen, free)
+            notices += checks.doubts(rows, points, self.seen, free, self.problem.labels)
         return Adjustment(
             problem=self.problem,
             variant=self.variant,

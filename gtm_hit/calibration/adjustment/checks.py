@@ -65,15 +65,18 @@ def usable(problem: Problem, seen: Seen) -> tuple[Seen, tuple[str, ...]]:
     unmet = _unmet(problem, seen) & ~single
     notices = []
     if single.any():
-        notices.append(_told(single, "seen in one view only and left out"))
+        notices.append(_told(single, "seen in one view only and left out", problem.labels))
     if unmet.any():
-        notices.append(_told(unmet, "seen along parallel rays, placed by nobody, and left out"))
+        left = "seen along parallel rays, placed by nobody, and left out"
+        notices.append(_told(unmet, left, problem.labels))
     kept = seen.where(~(single | unmet)[seen.points])
     _check_connected(problem, kept)
     return kept, tuple(notices)
 
 
-def doubts(rows: Floats, points: Floats, seen: Seen, free: int) -> tuple[str, ...]:
+def doubts(
+    rows: Floats, points: Floats, seen: Seen, free: int, labels: Sequence[str] = ()
+) -> tuple[str, ...]:
     """Sentences on points of a result that should not be trusted."""
     narrow = np.zeros(len(points), dtype=bool)
     narrow[np.unique(seen.points)] = True
@@ -83,9 +86,10 @@ def doubts(rows: Floats, points: Floats, seen: Seen, free: int) -> tuple[str, ..
     behind[seen.points[depths(rows, points, seen) <= 0]] = True
     sentences = []
     if narrow.any():
-        sentences.append(_told(narrow, f"seen along rays less than {NARROW:g}° apart, at no sure distance"))
+        what = f"seen along rays less than {NARROW:g}° apart, at no sure distance"
+        sentences.append(_told(narrow, what, labels))
     if behind.any():
-        sentences.append(_told(behind, "clicked in a view whose camera has them behind it"))
+        sentences.append(_told(behind, "clicked in a view whose camera has them behind it", labels))
     return tuple(sentences)
 
 
@@ -218,9 +222,10 @@ def _unmet(problem: Problem, seen: Seen) -> Flags:
     return unknown & ~met & seen_at_all
 
 
-def _told(which: Flags, what: str) -> str:
+def _told(which: Flags, what: str, labels: Sequence[str]) -> str:
     numbers = np.flatnonzero(which)
-    shown = ", ".join(map(str, numbers[:NAMED])) + (" …" if numbers.size > NAMED else "")
+    names = [labels[number] if labels else str(number) for number in numbers[:NAMED]]
+    shown = ", ".join(names) + (" …" if numbers.size > NAMED else "")
     noun = "point was" if numbers.size == 1 else "points were"
     return f"{numbers.size} {noun} {what}: {shown}."
 

@@ -54,6 +54,7 @@ class Problem:
     measured_sigma : how far they may be off; 0 keeps them exactly where they are
     weights : (N,) how much each observation of a free point counts; 0 leaves it out. None: all count 1
     feet : (P,) which free points are feet on the ground, for the report only; None: to be guessed
+    labels : (P + M) what points are called, free ones first; empty: they go by their numbers
     """
 
     views: tuple[View, ...]
@@ -65,6 +66,7 @@ class Problem:
     point_sigmas: Floats | None = None
     weights: Floats | None = None
     feet: NDArray[np.bool_] | None = None
+    labels: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:

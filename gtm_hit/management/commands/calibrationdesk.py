@@ -11,9 +11,21 @@ from django.core.management.base import BaseCommand, CommandError
 
 from gtm_hit.formats.files import read_source, write_bytes
 from gtm_hit.formats.problems import FormatError
+from gtm_hit.management import desk_adjusting
 from gtm_hit.management.lookups import dataset_named
 from gtm_hit.models import Desk
-from gtm_hit.ops.desk import checks, desks, edits, ground, kept, lenses, overview, pictures, placing
+from gtm_hit.ops.desk import (
+    adjust_view,
+    checks,
+    desks,
+    edits,
+    ground,
+    kept,
+    lenses,
+    overview,
+    pictures,
+    placing,
+)
 from gtm_hit.ops.desk.errors import DeskError
 
 MOST_BYTES = 50_000_000
@@ -33,7 +45,7 @@ class Command(BaseCommand):
             "--cameras", nargs="+", default=[], metavar="NAME", help="with --new: without a dataset"
         )
         parser.add_argument("--points", type=Path, metavar="FILE", help="measured points, CSV or JSON")
-        parser.add_argument("--unit", choices=["m", "cm", "mm"], default="", help="of --points and --clicks")
+        parser.add_argument("--unit", choices=["m", "cm", "mm"], default="", help="of all files given")
         two: Any = {"nargs": 2, "action": "append", "default": []}
         parser.add_argument("--lens", metavar=("CAMERA", "FILE"), help="a lens that is known", **two)
         parser.add_argument("--picture", metavar=("CAMERA", "FILE"), help="picture of the ground", **two)
@@ -47,8 +59,11 @@ class Command(BaseCommand):
             default=kept.Use.TEST.value,
             help="of --kept, where the file says none (%(default)s)",
         )
+        desk_adjusting.add_arguments(parser)
         parser.add_argument(
-            "--undo", metavar="PAGE", help="take the latest step back: of `ground`, `check` or `lens CAMERA`"
+            "--undo",
+            metavar="PAGE",
+            help="take the latest step back: of `ground`, `adjust`, `check` or `lens CAMERA`",
         )
         parser.add_argument("--redo", metavar="PAGE", help="do it again")
         parser.add_argument("--kept-out", type=Path, metavar="FILE", help="write the kept points, CSV")
@@ -79,12 +94,14 @@ class Command(BaseCommand):
             ground.put_pairs(found, camera, read(Path(file)), Path(file).name, options["unit"])
         if options["kept"]:
             kept.put_file(found, read(options["kept"]), options["kept"].name, options["use"])
+        desk_adjusting.work(found, options, self.stderr.write if options["json"] else self.stdout.write)
         if options["undo"]:
             edits.undo(found, options["undo"])
         if options["redo"]:
             edits.redo(found, options["redo"])
         if options["kept_out"]:
             write_bytes(options["kept_out"], kept.as_csv(found))
+        desk_adjusting.write(found, options)
         if options["cameras_json"]:
             write_bytes(options["cameras_json"], placing.cameras_json(found))
         if options["zip"]:
@@ -108,6 +125,7 @@ class Command(BaseCommand):
         for each in found.cameras:
             self.stdout.write(f"  {each.name:8} lens   {each.lens.verdict.value:11} {each.lens.words}")
             self.stdout.write(f"  {'':8} ground {each.ground.verdict.value:11} {each.ground.words}")
+        self.stdout.write(f"  {'adjust':15} {found.adjust.verdict.value:11} {found.adjust.words}")
         check = checks.step(desk)
         self.stdout.write(f"  {'check':15} {check.verdict.value:11} {check.words}")
 
@@ -131,6 +149,7 @@ def facts(desk: Desk, found: overview.Overview) -> dict[str, Any]:
         "points": found.points,
         "next_step": found.next_step.words,
         "cameras": cameras,
+        "adjust": adjust_view.whole(desk),
         "kept": checked["kept"],
         "summaries": checked["summaries"],
     }

@@ -25,6 +25,7 @@ NEEDED: dict[str, Roles] = {
     Job.Kind.REPLACE_CALIBRATION: Role.MAINTAINER,
     Job.Kind.PROPOSE: Role.MAINTAINER,
     Job.Kind.SOLVE_LENS: Role.MAINTAINER,
+    Job.Kind.ADJUST: Role.MAINTAINER,
     Job.Kind.SYNC_VIDEOS: Role.MAINTAINER,
     **dict.fromkeys(IMPORTS, Role.MAINTAINER),
 }

@@ -34,7 +34,7 @@ def one(desk: Desk, name: str) -> dict[str, Any]:
 
 
 def camera(row: DeskCamera) -> dict[str, Any]:
-    placed = poses.calibrated(row)
+    placed = poses.from_ground(row)  # with which the points expected go together
     return {
         "name": row.name,
         "width": row.width,

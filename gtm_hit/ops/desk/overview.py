@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import Any
 
 from gtm_hit.models import Desk, DeskCamera
-from gtm_hit.ops.desk import poses
+from gtm_hit.ops.desk import adjust_inputs, adjust_results, poses
 
 
 class Verdict(StrEnum):
@@ -23,6 +23,7 @@ class Page(StrEnum):
     DESK = "desk"
     LENS = "lens"
     GROUND = "ground"
+    ADJUST = "adjust"
     PLACE = "place"
 
 
@@ -56,6 +57,7 @@ class Overview:
     cameras: list[CameraSteps]
     points: int
     next_step: NextStep
+    adjust: Step  # of all cameras together
 
     @property
     def ready(self) -> bool:
@@ -69,7 +71,8 @@ SHARP_WIDTH = 640  # a good pose is off by this part of the picture's width at m
 def overview(desk: Desk) -> Overview:
     cameras = [CameraSteps(row.name, lens_step(row), ground_step(row), row) for row in desk.cameras.all()]
     points = desk.points.count()
-    return Overview(cameras, points, _next(cameras, points))
+    adjust = adjust_step(desk)
+    return Overview(cameras, points, _next(cameras, points, adjust), adjust)
 
 
 def lens_step(camera: DeskCamera) -> Step:
@@ -79,6 +82,24 @@ def lens_step(camera: DeskCamera) -> Step:
     if "verdict" in report:
         return Step(Verdict(report["verdict"]), report["words"])
     return Step(Verdict.USABLE, f"From {camera.lens['source']}; nothing here says how good it is.")
+
+
+def adjust_step(desk: Desk) -> Step:
+    """Good where a result is used, missing where there are clicks to adjust with."""
+    used, shared = adjust_results.in_use(desk), adjust_inputs.shared(desk)
+    if used.ended:
+        changed = ", ".join(used.ended)
+        return Step(Verdict.MISSING, f"Lens or clicks of {changed} changed after adjusting: adjust again.")
+    if used.number is not None:
+        since = adjust_results.changes(desk, adjust_results.result_of(desk, used.number))
+        told = f"By result {used.number}."
+        return Step(Verdict.USABLE if since else Verdict.GOOD, " ".join([told, *since]))
+    if shared.enough:
+        return Step(
+            Verdict.MISSING, f"Not adjusted yet; {shared.free} points are seen by two cameras or more."
+        )
+    least = adjust_inputs.FEWEST
+    return Step(Verdict.USABLE, f"Nothing to adjust: fewer than {least} shared points. It can go without.")
 
 
 def ground_step(camera: DeskCamera) -> Step:
@@ -103,7 +124,7 @@ def _posed(camera: DeskCamera, report: dict[str, Any]) -> Step:
     return Step(Verdict.GOOD, told)
 
 
-def _next(cameras: list[CameraSteps], points: int) -> NextStep:
+def _next(cameras: list[CameraSteps], points: int, adjust: Step) -> NextStep:
     if not cameras:
         return NextStep("Add the cameras.", Page.DESK)
     for each in cameras:
@@ -118,4 +139,6 @@ def _next(cameras: list[CameraSteps], points: int) -> NextStep:
             return NextStep(f"Click points in {each.name}.", Page.GROUND, each.name)
         if each.ground.verdict is Verdict.DO_NOT_USE:
             return NextStep(f"Look at what is wrong in {each.name}.", Page.GROUND, each.name)
+    if adjust.verdict is Verdict.MISSING:
+        return NextStep("Adjust all cameras together.", Page.ADJUST)
     return NextStep("Put the calibration in place.", Page.PLACE)

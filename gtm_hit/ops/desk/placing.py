@@ -19,7 +19,7 @@ from gtm_hit.geometry.camera import Camera
 from gtm_hit.geometry.cylinder import FootRule
 from gtm_hit.models import Desk, DeskCamera, Job
 from gtm_hit.ops.calibration import job as calibration_job
-from gtm_hit.ops.desk import overview, poses
+from gtm_hit.ops.desk import adjust_results, overview, poses
 from gtm_hit.ops.desk.errors import DeskError
 from gtm_hit.ops.exports.calibrations import calibration_files
 
@@ -52,6 +52,11 @@ def cautions(desk: Desk) -> list[str]:
         for what, step in (("lens", each.lens), ("place", each.ground)):
             if step.verdict is overview.Verdict.DO_NOT_USE:
                 told.append(f"The {what} of {each.name} should not be used: {step.words}")
+    if ended := adjust_results.in_use(desk).ended:
+        told.append(
+            f"Lens or clicks of {', '.join(ended)} changed after adjusting: they stand by themselves, the "
+            "others as they were adjusted. Adjust again."
+        )
     return told
 
 
@@ -75,9 +80,11 @@ def report(desk: Desk) -> dict[str, Any]:
     """How the cameras came about: digests of what went in, settings, and figures per camera."""
     points = [[each.name, each.x, each.y, each.z] for each in desk.points.order_by("number")]
     last = desk.edits.filter(undone=False).order_by("-number").first()
+    used = adjust_results.in_use(desk)
     return {
         "desk": desk.slug,
         "step": last.number if last else 0,
+        "adjusted": _of_result(desk, used) if used.number is not None else None,
         "points": {"count": len(points), "digest": _digest(points)},
         "cameras": [_of_camera(row) for row in desk.cameras.order_by("index")],
     }
@@ -116,6 +123,21 @@ def _files(desk: Desk) -> Iterator[tuple[str, bytes]]:
     yield "calibrations/README.txt", README.format(slug=desk.slug).encode()
     bent = any(camera.has_lens for camera in found)
     yield from calibration_files(found, FootRule.CORNERS, "intrinsic_original" if bent else "intrinsic_zero")
+
+
+def _of_result(desk: Desk, used: adjust_results.InUse) -> dict[str, Any]:
+    found = adjust_results.result_of(desk, used.number)
+    told: dict[str, Any] = found.report or {}
+    figures = {
+        name: told.get(name) for name in ("cost", "median_px", "measured_after", "hold_out", "monotone")
+    }
+    return {
+        "number": found.number,
+        "inputs": found.of,
+        "choices": found.choices,
+        "ended": used.ended,
+        **figures,
+    }
 
 
 def _of_camera(row: DeskCamera) -> dict[str, Any]:

@@ -47,11 +47,41 @@ def lens_of(camera: DeskCamera) -> Lens | None:
 
 def calibrated(camera: DeskCamera) -> Camera | None:
     """The camera as it would be put in place; None as long as something is missing."""
-    lens = lens_of(camera)
-    if lens is None or camera.pose is None:
+    found = adjusted_of(camera)
+    return _camera(camera, found["lens"], found["pose"]) if found else from_ground(camera)
+
+
+def from_ground(camera: DeskCamera) -> Camera | None:
+    """The camera by its own lens and its own clicks alone: what an adjustment begins with."""
+    if camera.lens is None or camera.pose is None:
         return None
-    rvec, tvec = (np.array(camera.pose[name], dtype=np.float64) for name in ("rvec", "tvec"))
-    return lens.camera(camera.name, rvec, tvec, camera.index)
+    return _camera(camera, camera.lens, camera.pose)
+
+
+def adjusted_of(camera: DeskCamera) -> dict[str, Any] | None:
+    """What an adjustment found, as long as the camera's lens and pose are those it began from.
+
+    So a click or a lens that comes later counts, and taking it back brings the adjusted camera back.
+    """
+    adjusted: dict[str, Any] | None = camera.adjusted
+    return adjusted if adjusted and adjusted["from"] == beginning(camera) else None
+
+
+def beginning(camera: DeskCamera) -> dict[str, Any]:
+    """What tells whether an adjustment began from the camera as it is."""
+    lens = camera.lens or {}
+    return {
+        "size": [camera.width, camera.height],
+        "matrix": lens.get("matrix"),
+        "distortion": lens.get("distortion"),
+        "pose": camera.pose,
+    }
+
+
+def _camera(row: DeskCamera, lens: dict[str, Any], pose: dict[str, Any]) -> Camera:
+    matrix, distortion = (np.array(lens[name], dtype=np.float64) for name in ("matrix", "distortion"))
+    rvec, tvec = (np.array(pose[name], dtype=np.float64) for name in ("rvec", "tvec"))
+    return Lens(row.width, row.height, matrix, distortion).camera(row.name, rvec, tvec, row.index)
 
 
 def _solved(camera: DeskCamera) -> tuple[dict[str, Any] | None, dict[str, Any]]:

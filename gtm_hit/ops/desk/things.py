@@ -6,11 +6,21 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from gtm_hit.models import BoardPicture, Click, Desk, DeskCamera, KeptClick, KeptPoint, MeasuredPoint
+from gtm_hit.models import (
+    BoardPicture,
+    Click,
+    ClickDecision,
+    Desk,
+    DeskCamera,
+    KeptClick,
+    KeptPoint,
+    MeasuredPoint,
+)
 from gtm_hit.ops.desk.errors import NotThere
 
 CLICK, POINT, LENS, PICTURE, BOARD_PICTURE = "click", "point", "lens", "picture", "board picture"
 KEPT_POINT, KEPT_CLICK = "kept point", "kept click"
+CLICK_FILE, DECISION, ADJUSTED = "click file", "decision", "adjusted"
 
 
 @dataclass(frozen=True)
@@ -28,10 +38,10 @@ def camera_of(desk: Desk, name: str) -> DeskCamera:
 
 
 def camera_named(kind: str, key: list[str]) -> str:
-    """The camera a thing is about; empty for a point, which is about none."""
-    if kind in {POINT, KEPT_POINT}:
+    """The camera a thing is about; empty for a point or a file, which are about none."""
+    if kind in {POINT, KEPT_POINT, CLICK_FILE}:
         return ""
-    return key[1] if kind == KEPT_CLICK else key[0]
+    return key[-1] if kind in {KEPT_CLICK, DECISION} else key[0]
 
 
 def point_of(desk: Desk, name: str) -> MeasuredPoint:
@@ -158,6 +168,47 @@ def write_kept_click(desk: Desk, key: list[str], value: list[float] | None) -> N
     KeptClick.objects.update_or_create(point=point, camera=camera, defaults={"x": x, "y": y})
 
 
+def read_click_file(desk: Desk, key: list[str]) -> bool | None:
+    """Whether the clicks with digest [digest] are adjusted with."""
+    return desk.click_files.filter(digest=key[0]).values_list("used", flat=True).first()
+
+
+def write_click_file(desk: Desk, key: list[str], value: bool | None) -> None:
+    if not desk.click_files.filter(digest=key[0]).update(used=bool(value)):
+        raise NotThere("The desk has no such file of clicks.")
+
+
+def read_decision(desk: Desk, key: list[str]) -> list[Any] | None:
+    """Decision, x and y of the click [source, point, camera]."""
+    source, point, camera = key
+    found = desk.click_decisions.filter(source=source, point=point, camera=camera).first()
+    return [found.decision, found.x, found.y] if found else None
+
+
+def write_decision(desk: Desk, key: list[str], value: list[Any] | None) -> None:
+    source, point, camera = key
+    if value is None:
+        desk.click_decisions.filter(source=source, point=point, camera=camera).delete()
+        return
+    decision, x, y = value
+    values = {"decision": decision, "x": x, "y": y}
+    ClickDecision.objects.update_or_create(
+        desk=desk, source=source, point=point, camera=camera, defaults=values
+    )
+
+
+def read_adjusted(desk: Desk, key: list[str]) -> dict[str, Any] | None:
+    """Lens and pose of the adjustment that [camera] uses, and what it began from."""
+    adjusted: dict[str, Any] | None = camera_of(desk, key[0]).adjusted
+    return adjusted
+
+
+def write_adjusted(desk: Desk, key: list[str], value: dict[str, Any] | None) -> None:
+    camera = camera_of(desk, key[0])
+    camera.adjusted = value
+    camera.save(update_fields=["adjusted"])
+
+
 THINGS: dict[str, Thing] = {
     CLICK: Thing(read_click, write_click),
     POINT: Thing(read_point, write_point),
@@ -166,4 +217,7 @@ THINGS: dict[str, Thing] = {
     BOARD_PICTURE: Thing(read_board_picture, write_board_picture),
     KEPT_POINT: Thing(read_kept_point, write_kept_point),
     KEPT_CLICK: Thing(read_kept_click, write_kept_click),
+    CLICK_FILE: Thing(read_click_file, write_click_file),
+    DECISION: Thing(read_decision, write_decision),
+    ADJUSTED: Thing(read_adjusted, write_adjusted),
 }
