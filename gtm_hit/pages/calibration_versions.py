@@ -99,7 +99,6 @@ def _drawn(dataset: Dataset, found: Difference) -> dict[str, Any]:
         "lines": [_line(found, index) for index in range(len(found.boxes))],
         "map": GroundMap(dataset, seen),
         "worst": found.worst_bands(),
-        "same": all(not change.moved and not change.turned for change in found.change.cameras),
     }
 
 
