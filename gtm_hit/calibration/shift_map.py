@@ -13,7 +13,7 @@ from gtm_hit.calibration.comparing import Cells
 
 Floats = NDArray[np.float64]
 
-EDGES = (0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)  # cm; the same in every map, so that maps can be compared
+EDGES = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)  # cm; the same in every map, so that maps can be compared
 
 
 @dataclass(frozen=True)

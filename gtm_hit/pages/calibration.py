@@ -18,7 +18,7 @@ from gtm_hit.models import Dataset, Job
 from gtm_hit.ops.access.jobs import jobs_of
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.calibration import job as calibration_job
-from gtm_hit.ops.calibration import versions
+from gtm_hit.ops.calibration import sides, versions
 from gtm_hit.ops.calibration.cameras import UNITS
 from gtm_hit.ops.calibration.reading import MOST_BYTES, file_report, read_upload
 from gtm_hit.ops.calibration.replacing import ReplacementError
@@ -113,6 +113,8 @@ def preview(request: HttpRequest, slug: str, pk: int) -> HttpResponse:
         "job": job,
         "seen": seen,
         "views": _views(dataset, seen),
+        "now": dataset.calibration.number if dataset.calibration else None,
+        "key": sides.key_of(job),
     }
     return render(request, "staff/imports/calibration_preview.html", context)
 

@@ -5,6 +5,7 @@ from django.urls import URLPattern, URLResolver
 from gtm_hit.pages import (
     api_tokens,
     calibration,
+    calibration_versions,
     gold,
     home,
     hooks,
@@ -58,6 +59,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *dataset_imports.urlpatterns,
     *sync.urlpatterns,
     *calibration.urlpatterns,
+    *calibration_versions.urlpatterns,
     *desks.urlpatterns,
     *desk_ground.urlpatterns,
     *desk_lens.urlpatterns,

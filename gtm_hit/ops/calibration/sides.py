@@ -61,6 +61,12 @@ def side(dataset: Dataset, key: str) -> Side:
     )
 
 
+def key_of(job: Job) -> str:
+    """Of what a comparison of boxes was asked for."""
+    number = job.parameters.get("version")
+    return f"{JOB}:{job.pk}" if number is None else str(number)
+
+
 def _versions(dataset: Dataset) -> Iterator[Choice]:
     for each in versions.versions(dataset):
         used = ", in use" if each.pk == dataset.calibration_id else ""
