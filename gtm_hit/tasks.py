@@ -14,6 +14,7 @@ from gtm_hit.models import Job
 from gtm_hit.ops.calibration import job as calibration_job
 from gtm_hit.ops.datasets import job
 from gtm_hit.ops.desk import lens_job
+from gtm_hit.ops.drift import job as drift_job
 from gtm_hit.ops.exports import expiry, exporting
 from gtm_hit.ops.files import picture_cleanup, sources
 from gtm_hit.ops.jobs import queue
@@ -30,6 +31,7 @@ from gtm_hit.ops.sync import pictures as video_pictures
 from gtm_hit.ops.work import assignments
 
 OPERATIONS: dict[str, queue.Operation] = {
+    Job.Kind.DRIFT: drift_job.run,
     Job.Kind.EXPORT_LAYER: exporting.run,
     Job.Kind.IMPORT_DATASET: job.run_import,
     Job.Kind.IMPORT_VIDEOS: job.run_videos,

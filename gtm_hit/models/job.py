@@ -28,6 +28,7 @@ class Job(models.Model):
         SEND_OUTBOX = "send_outbox", "messages to a platform"
         PROPOSE = "propose", "proposals of people"
         SOLVE_LENS = "solve_lens", "lens from pictures of a board"
+        DRIFT = "drift", "drift of cameras"
         SYNC_VIDEOS = "sync_videos", "guess of videos' offsets"
 
     dataset = models.ForeignKey(

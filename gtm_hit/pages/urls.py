@@ -5,6 +5,7 @@ from django.urls import URLPattern, URLResolver
 from gtm_hit.pages import (
     api_tokens,
     calibration,
+    drift,
     gold,
     home,
     hooks,
@@ -54,6 +55,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     *jobs.urlpatterns,
     *dataset_imports.urlpatterns,
     *calibration.urlpatterns,
+    *drift.urlpatterns,
     *desks.urlpatterns,
     *desk_ground.urlpatterns,
     *desk_lens.urlpatterns,

@@ -39,11 +39,11 @@ class Drift:
     def verdict(self) -> str:
         if self.px is None or self.most_px is None:
             return f"{self.camera}: cannot tell: the picture has too few marks left ({self.found} of {self.marks})."
-        ground = "" if self.cm is None else f" ({self.cm:.1f} cm on the ground in the middle of its view)"
+        ground = "" if self.cm is None else f" ({self.cm:.1f} cm on the ground)"
         if self.state == STILL:
             return f"{self.camera} is steady: {self.px:.1f} px."
         if self.state == A_LITTLE:
-            return f"{self.camera} has moved a little: {self.px:.1f} px{ground}, too little to matter yet."
+            return f"{self.camera} has moved a little: {self.px:.1f} px{ground}, below the {WARN:g} px that matter."
         most = f", up to {self.most_px:.1f} px" if self.most_px > self.px + 0.5 else ""
         return f"{self.camera} has moved by {self.px:.1f} px{most}{ground}."
 

@@ -56,7 +56,9 @@ def _refined(piece: Grey, picture: Grey, left: int, top: int) -> tuple[float, fl
     height, width = picture.shape
     if left < pad or top < pad or left + SIDE + pad > width or top + SIDE + pad > height:
         return None
-    there = cv2.GaussianBlur(picture[top - pad : top + SIDE + pad, left - pad : left + SIDE + pad], (0, 0), 1.0)
+    there = cv2.GaussianBlur(
+        picture[top - pad : top + SIDE + pad, left - pad : left + SIDE + pad], (0, 0), 1.0
+    )
     window = there.astype(np.float32)
     wanted = cv2.GaussianBlur(piece, (0, 0), 1.0).astype(np.float32)
     inner = np.s_[2:-2, 2:-2]  # the blur knows nothing beyond the piece's rim
@@ -64,7 +66,10 @@ def _refined(piece: Grey, picture: Grey, left: int, top: int) -> tuple[float, fl
     for _ in range(ROUNDS):
         centre = (window.shape[1] / 2 - 0.5 + x, window.shape[0] / 2 - 0.5 + y)
         seen = cv2.getRectSubPix(window, (SIDE, SIDE), centre)
-        gx, gy = cv2.Sobel(seen, cv2.CV_32F, 1, 0, scale=1 / 8), cv2.Sobel(seen, cv2.CV_32F, 0, 1, scale=1 / 8)
+        gx, gy = (
+            cv2.Sobel(seen, cv2.CV_32F, 1, 0, scale=1 / 8),
+            cv2.Sobel(seen, cv2.CV_32F, 0, 1, scale=1 / 8),
+        )
         columns = [gx[inner].ravel(), gy[inner].ravel(), seen[inner].ravel(), np.ones(seen[inner].size)]
         # wanted = gain · (seen + gradient · step) + offset, the step scaled by the gain
         answer = np.linalg.lstsq(np.column_stack(columns), wanted[inner].ravel(), rcond=None)[0]

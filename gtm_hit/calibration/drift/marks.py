@@ -74,7 +74,9 @@ def choose(pictures: Sequence[Grey]) -> Marks:
     inside = np.zeros_like(corners)
     inside[rim:-rim, rim:-rim] = corners[rim:-rim, rim:-rim]
     places = _best_of_cells(inside)
-    marks = tuple(Mark(x, y, still[y - HALF : y + HALF + 1, x - HALF : x + HALF + 1].copy()) for x, y in places)
+    marks = tuple(
+        Mark(x, y, still[y - HALF : y + HALF + 1, x - HALF : x + HALF + 1].copy()) for x, y in places
+    )
     return Marks(width, height, len(pictures), marks)
 
 
@@ -94,7 +96,9 @@ def _still(pictures: Sequence[Grey]) -> tuple[Grey, NDArray[np.float32]]:
     for picture in pictures:  # the light may change for all: that is nobody passing
         light = float(np.median(picture.astype(np.int16) - median))
         changes = np.maximum(changes, np.abs(picture.astype(np.float32) - median - light))
-    return median, cv2.blur(cv2.medianBlur(np.minimum(changes, 255).astype(np.uint8), 5).astype(np.float32), (SIDE, SIDE))
+    return median, cv2.blur(
+        cv2.medianBlur(np.minimum(changes, 255).astype(np.uint8), 5).astype(np.float32), (SIDE, SIDE)
+    )
 
 
 def _spread(still: Grey) -> NDArray[np.float32]:
