@@ -38,12 +38,14 @@ class Drift:
     @property
     def verdict(self) -> str:
         if self.px is None or self.most_px is None:
-            return f"{self.camera}: cannot tell: the picture has too few marks left ({self.found} of {self.marks})."
+            left = f"{self.found} of {self.marks}"
+            return f"{self.camera}: cannot tell, the picture has too few marks left ({left})."
         ground = "" if self.cm is None else f" ({self.cm:.1f} cm on the ground)"
         if self.state == STILL:
             return f"{self.camera} is steady: {self.px:.1f} px."
         if self.state == A_LITTLE:
-            return f"{self.camera} has moved a little: {self.px:.1f} px{ground}, below the {WARN:g} px that matter."
+            little = f"{self.camera} has moved a little: {self.px:.1f} px{ground}"
+            return f"{little}, below the {WARN:g} px that are warned of."
         most = f", up to {self.most_px:.1f} px" if self.most_px > self.px + 0.5 else ""
         return f"{self.camera} has moved by {self.px:.1f} px{most}{ground}."
 
@@ -76,7 +78,7 @@ def check(name: str, marks: Marks, picture: Grey, camera: Camera | None = None) 
     found = find(marks, picture)
     moved = movement(found, len(marks.marks))
     if moved is None:
-        return Drift(name, UNKNOWN, *[None] * 6, len(found), len(marks.marks), ())  # type: ignore[arg-type]
+        return Drift(name, UNKNOWN, None, None, None, None, None, None, len(found), len(marks.marks), ())
     state = MOVED if moved.most_px > WARN else STILL if moved.most_px < STEADY else A_LITTLE
     return Drift(
         name,

@@ -71,7 +71,7 @@ def choose(pictures: Sequence[Grey]) -> Marks:
     corners[_spread(still) < CONTRAST] = 0
     corners[restless > RESTLESS] = 0
     rim = HALF + 2
-    inside = np.zeros_like(corners)
+    inside = np.zeros(corners.shape, np.float32)
     inside[rim:-rim, rim:-rim] = corners[rim:-rim, rim:-rim]
     places = _best_of_cells(inside)
     marks = tuple(
@@ -96,9 +96,8 @@ def _still(pictures: Sequence[Grey]) -> tuple[Grey, NDArray[np.float32]]:
     for picture in pictures:  # the light may change for all: that is nobody passing
         light = float(np.median(picture.astype(np.int16) - median))
         changes = np.maximum(changes, np.abs(picture.astype(np.float32) - median - light))
-    return median, cv2.blur(
-        cv2.medianBlur(np.minimum(changes, 255).astype(np.uint8), 5).astype(np.float32), (SIDE, SIDE)
-    )
+    lone = cv2.medianBlur(np.minimum(changes, 255).astype(np.uint8), 5)  # without the grain of the sensor
+    return median, np.asarray(cv2.blur(lone.astype(np.float32), (SIDE, SIDE)), np.float32)
 
 
 def _spread(still: Grey) -> NDArray[np.float32]:

@@ -36,13 +36,13 @@ class Command(BaseCommand):
         parser.add_argument("--json", action="store_true", help="print one object")
 
     def handle(self, *, slug: str, **options: Any) -> None:
-        dataset, span = dataset_named(slug), Span(*options["frames"], options["every"])
+        dataset, span = dataset_named(slug), _span(options)
         progress = ProgressLine(self.stderr)
         try:
             if options["remember"]:
                 told = self.remember(dataset, span, progress)
             else:
-                told = self.check(dataset, span, progress)
+                told = self.compare(dataset, span, progress)
         except DriftRefused as error:
             raise CommandError(str(error)) from error
         if options["json"]:
@@ -59,7 +59,7 @@ class Command(BaseCommand):
             "lines": [f"{row.camera.name}: {row.count} marks from {len(row.frames)} frames" for row in rows],
         }
 
-    def check(self, dataset: Dataset, span: Span, progress: ProgressLine) -> dict[str, Any]:
+    def compare(self, dataset: Dataset, span: Span, progress: ProgressLine) -> dict[str, Any]:
         found: DriftCheck = checking.check_frames(dataset, span, progress)
         progress.finish()
         return {
@@ -69,6 +69,11 @@ class Command(BaseCommand):
             "cameras": found.cameras,
             "lines": [camera["verdict"] for camera in found.cameras],
         }
+
+
+def _span(options: dict[str, Any]) -> Span:
+    first, last = options["frames"]
+    return Span(first, last, options["every"])
 
 
 def _range(text: str) -> tuple[int, int]:
