@@ -1,7 +1,7 @@
 """Whether cameras that moved are found: the demo scene rendered by cameras moved by known amounts.
 
-Marks come from five pictures; two later ones, with people elsewhere, are compared with them, and each once more
-darkened and once with much noise.
+Marks come from five pictures; two later ones, with people elsewhere, are compared with them, and each once
+more darkened and once with much noise.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def _rows(tries: list[Try], cameras: int) -> list[Row]:
     found = sum(each.found.state == MOVED for each in large)
     where = f"drift: {cameras} cameras"
     return [
-        Row(f"{where}, shifts 0 … 5 px: worst error", f"{worst:.2f} px", f"≤ {ERROR} px", worst <= ERROR),
+        Row(f"{where}, shifts 0 to 5 px: worst error", f"{worst:.2f} px", f"≤ {ERROR} px", worst <= ERROR),
         Row("… 3 and 5 px warned of", f"{found} of {len(large)}", "all", found == len(large)),
         Row("… 0, 0.5 and 1 px warned of", f"{alarms} of {len(small)}", "none", alarms == 0),
         Row(

@@ -13,11 +13,11 @@ from django.utils.translation import gettext as _
 from django.utils.translation import gettext_lazy
 from django.views.decorators.http import require_http_methods
 
-from gtm_hit.calibration.drift.checking import WARN
 from gtm_hit.models import Dataset, DriftCheck, Job
 from gtm_hit.ops import overview
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.drift import job, remembering
+from gtm_hit.ops.drift.checking import WARN
 from gtm_hit.ops.drift.pictures import DriftRefused, Span
 from gtm_hit.pages.common.access import StaffRequest, needs
 from gtm_hit.pages.datasets.listing import dataset_or_404

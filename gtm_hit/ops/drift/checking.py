@@ -8,12 +8,14 @@ from typing import Any
 from django.contrib.auth.models import User
 from django.utils.translation import gettext as _
 
-from gtm_hit.calibration.drift.checking import MOVED, Drift, check
+from gtm_hit.calibration.drift.checking import MOVED, WARN, Drift, check
 from gtm_hit.calibration.drift.marks import DriftError, marks_of
 from gtm_hit.models import Dataset, DriftCheck, DriftMarks, Job
 from gtm_hit.ops.drift.pictures import DriftRefused, Span, frames_in, grey, images_of
 from gtm_hit.ops.drift.remembering import in_place
 from gtm_hit.ops.jobs.progress import Progress, no_progress
+
+__all__ = ["NOTHING_REMEMBERED", "WARN", "check_frames"]
 
 CHECKING = "comparing with the marks"
 NOTHING_REMEMBERED = "No marks are remembered for the calibration in place. Remember marks first."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import asdict
 from typing import Any
 
@@ -22,6 +23,15 @@ def start(dataset: Dataset, span: Span, remember: bool = False, user: User | Non
     if not remember and not remembering.remembered(dataset).exists():
         raise DriftRefused(_(checking.NOTHING_REMEMBERED))
     return queue.create_once(Job.Kind.DRIFT, dataset, {**asdict(span), "remember": remember}, user)
+
+
+def start_by_itself(dataset: Dataset, user: User | None = None) -> Job | None:
+    """For a calibration just put in place that has no marks yet; nothing where there are no pictures."""
+    if remembering.remembered(dataset).exists():
+        return None
+    with suppress(DriftRefused):
+        return start(dataset, Span(), remember=True, user=user)
+    return None
 
 
 def run(mine: queue.Run) -> dict[str, Any]:

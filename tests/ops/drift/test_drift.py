@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from datetime import timedelta
 from io import StringIO
 from pathlib import Path
@@ -15,10 +16,12 @@ from django.test import Client
 from django.utils import timezone
 
 from gtm_hit.models import Dataset, DriftCheck, DriftMarks, Job
+from gtm_hit.ops.calibration import job as calibration_job
 from gtm_hit.ops.drift import checking, job, remembering
 from gtm_hit.ops.drift.pictures import DriftRefused, Span
 from gtm_hit.ops.jobs import queue
 from gtm_hit.tasks import OPERATIONS
+from tests.dataset_folder import cameras
 from tests.ops.drift.scene import BY, FRAMES, KNOCKED, SINCE, knocked
 
 pytestmark = pytest.mark.django_db
@@ -106,9 +109,30 @@ def test_a_job_that_is_stopped_leaves_the_marks_there_were(
         return choose(pictures)
 
     monkeypatch.setattr(remembering, "choose", stopped_meanwhile)
+    monkeypatch.setattr(queue, "SECONDS_BETWEEN_REPORTS", 0)
     queue.run(begun.pk, OPERATIONS)
     assert Job.objects.get(pk=begun.pk).state == Job.State.CANCELLED
     assert [row.pk for row in remembering.remembered(dataset)] == [row.pk for row in before]
+
+
+def test_a_calibration_put_in_place_gets_marks_of_its_own_once(dataset: Dataset) -> None:
+    old = remembering.remember(dataset, CALM)
+    found = cameras()
+    matrix = found[1].matrix.copy()
+    matrix[0, 2] += 3
+    found[1] = replace(found[1], matrix=matrix)
+    _put_in_place(calibration_job.start(dataset, found))
+    assert not remembering.remembered(dataset).exists()
+    queue.run(Job.objects.get(kind=Job.Kind.DRIFT).pk, OPERATIONS)
+    assert [row.calibration.number for row in remembering.remembered(dataset)] == [2, 2, 2]
+    _put_in_place(calibration_job.start_version(dataset, 1))
+    assert [row.pk for row in remembering.remembered(dataset)] == [row.pk for row in old]
+    assert Job.objects.filter(kind=Job.Kind.DRIFT).count() == 1
+
+
+def _put_in_place(comparison: Job) -> None:
+    queue.run(comparison.pk, OPERATIONS)
+    calibration_job.confirm(comparison)
 
 
 def test_the_command_remembers_and_compares(dataset: Dataset) -> None:
