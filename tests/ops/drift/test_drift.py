@@ -168,6 +168,9 @@ def test_the_page_has_an_empty_state_then_verdicts_plots_and_arrows(dataset: Dat
     assert "Remember marks first" in client.post(address, {"every": 1, "do": "check"}).content.decode()
     for order in ({"do": "remember", "every": 1, "last": SINCE - 1}, {"do": "check", "every": 1}):
         queue.run(int(client.post(address, order)["Location"].strip("/").split("/")[-1]), OPERATIONS)
+    last = Job.objects.filter(kind=Job.Kind.DRIFT).latest("pk")
+    told = client.get(f"/jobs/{last.pk}/").content.decode()
+    assert "A camera has moved." in told and f"{address}?check={last.result['check']}" in told
     page = client.get(address).content.decode()
     assert "a camera has moved" in page and "C2 has moved by 3.0 px" in page and "C1 is steady" in page
     assert page.count("<polyline") == 3 and page.count('class="arrows"') == 3
