@@ -13,7 +13,7 @@ from pathlib import Path
 
 from benchmarks.calibration_rows import Row, table
 
-PARTS = ("lens", "ground", "adjust", "sync")
+PARTS = ("lens", "ground", "adjust", "drift", "sync")
 
 
 def rows_of(part: str, data: Path | None) -> list[Row]:

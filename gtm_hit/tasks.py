@@ -14,6 +14,7 @@ from gtm_hit.models import Job
 from gtm_hit.ops.calibration import job as calibration_job
 from gtm_hit.ops.datasets import job
 from gtm_hit.ops.desk import adjust_job, lens_job
+from gtm_hit.ops.drift import job as drift_job
 from gtm_hit.ops.exports import expiry, exporting
 from gtm_hit.ops.files import picture_cleanup, sources
 from gtm_hit.ops.jobs import queue
@@ -31,6 +32,7 @@ from gtm_hit.ops.work import assignments
 
 OPERATIONS: dict[str, queue.Operation] = {
     Job.Kind.ADJUST: adjust_job.run,
+    Job.Kind.DRIFT: drift_job.run,
     Job.Kind.EXPORT_LAYER: exporting.run,
     Job.Kind.IMPORT_DATASET: job.run_import,
     Job.Kind.IMPORT_VIDEOS: job.run_videos,

@@ -21,6 +21,7 @@ from gtm_hit.models.desk import (
     KeptPoint,
     MeasuredPoint,
 )
+from gtm_hit.models.drift import DriftCheck, DriftMarks
 from gtm_hit.models.gold import GoldFrame, PlantedFault, Planting
 from gtm_hit.models.job import Job
 from gtm_hit.models.money import MoneyEntry, WorkClock
@@ -67,6 +68,8 @@ __all__ = [
     "DeskCamera",
     "DeskEdit",
     "DeskPicture",
+    "DriftCheck",
+    "DriftMarks",
     "EntryLink",
     "Frame",
     "GoldFrame",

@@ -29,6 +29,7 @@ class Job(models.Model):
         PROPOSE = "propose", "proposals of people"
         SOLVE_LENS = "solve_lens", "lens from pictures of a board"
         ADJUST = "adjust", "adjustment of cameras"
+        DRIFT = "drift", "drift of cameras"
         SYNC_VIDEOS = "sync_videos", "guess of videos' offsets"
 
     dataset = models.ForeignKey(

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import io
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from django.core.management import CommandError, call_command
 
 from gtm_hit.formats.calibration.cameras_json import save_cameras
 from gtm_hit.formats.calibration.wildtrack_xml import Intrinsic, intrinsic_xml
-from gtm_hit.geometry.camera import normalise
+from gtm_hit.geometry.camera import beyond_fold, normalise
 from tests.calibration.clicked import LENS, standing
 
 
@@ -65,6 +66,18 @@ def test_black_pixels_are_counted(tmp_path: Path, lens: Path, pictures: Path) ->
     picture = cv2.imread(str(tmp_path / "out/b.png"), cv2.IMREAD_UNCHANGED)
     assert found["black_pixels"] == pytest.approx((picture < 20_000).sum(), rel=0.02)
     assert found["folded_pixels"] == 0
+
+
+def test_pixels_before_which_the_lens_folds_are_black_and_counted(tmp_path: Path) -> None:
+    folding = replace(standing(), distortion=np.array([-0.6, 0.0, 0.0, 0.0, 0.0]))
+    save_cameras(tmp_path / "cameras.json", [folding])
+    cv2.imwrite(str(tmp_path / "white.png"), np.full((1080, 1920), 255, np.uint8))
+    found = run(tmp_path / "white.png", tmp_path / "out", "--lens", tmp_path / "cameras.json", "--alpha", "1")
+    folded = beyond_fold(folding, np.array(found["camera_matrix"]))
+    picture = cv2.imread(str(tmp_path / "out/white.png"), cv2.IMREAD_GRAYSCALE)
+    assert found["folded_pixels"] == folded.sum() > 10_000
+    assert picture[folded].max() == 0
+    assert found["black_pixels"] >= found["folded_pixels"]
 
 
 def test_pictures_of_another_size_are_refused_and_nothing_is_written(

@@ -162,3 +162,15 @@ def test_undistorting_a_picture_moves_a_mark_where_the_undistorted_camera_projec
 def test_the_undistorted_original_cameras_are_the_cameras_of_the_undistorted_pictures() -> None:
     for original, zero in zip(wildtrack_cameras(original=True), wildtrack_cameras(), strict=True):
         assert undistorted(original, zero.matrix).as_json() == zero.as_json()
+
+
+def test_every_pixel_of_the_published_lenses_goes_to_its_direction_and_back_or_has_none() -> None:
+    """OpenCV's own inverse with its usual five steps is off by up to 81 pixels in these pictures."""
+    for camera in wildtrack_cameras(original=True):
+        pixels = np.stack(np.meshgrid(np.arange(0.0, 1920, 12), np.arange(0.0, 1080, 12)), -1).reshape(-1, 2)
+        directions = normalise(camera, pixels)
+        known = np.isfinite(directions).all(axis=1)
+        rays = np.column_stack((directions[known], np.ones(known.sum())))
+        back = project(replace(camera, rvec=np.zeros(3), tvec=np.zeros(3)), rays)
+        assert known.mean() > 0.97
+        assert np.abs(back - pixels[known]).max() < 1e-5

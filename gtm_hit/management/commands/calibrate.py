@@ -5,7 +5,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandParser
 
-from gtm_hit.management.calibrating import adjust, board, check, export, ground, lens, sync, undistort
+from gtm_hit.management.calibrating import adjust, board, check, drift, export, ground, lens, sync, undistort
 from gtm_hit.management.calibrating.step import Step
 
 STEPS: dict[str, Step] = {
@@ -14,6 +14,7 @@ STEPS: dict[str, Step] = {
     "ground": ground,
     "adjust": adjust,
     "check": check,
+    "drift": drift,
     "undistort": undistort,
     "export": export,
     "sync": sync,

@@ -87,6 +87,7 @@ class Command(BaseCommand):
         except ReplacementError as error:
             raise CommandError(str(error)) from error
         self.stdout.write(f"The new calibration is in place as number {placed.number}.")
+        self.stdout.write(f"manage.py drift {dataset.slug} --remember keeps marks by which drift is seen.")
 
     def tell_versions(self, dataset: Dataset) -> None:
         for each in versions.versions(dataset):

@@ -23,6 +23,7 @@ NEEDED: dict[str, Roles] = {
     Job.Kind.EXPORT_LAYER: CARES,
     Job.Kind.MAKE_RELEASE: Role.MAINTAINER,
     Job.Kind.REPLACE_CALIBRATION: Role.MAINTAINER,
+    Job.Kind.DRIFT: Role.MAINTAINER,
     Job.Kind.PROPOSE: Role.MAINTAINER,
     Job.Kind.SOLVE_LENS: Role.MAINTAINER,
     Job.Kind.ADJUST: Role.MAINTAINER,

@@ -15,6 +15,7 @@ from gtm_hit.models import Dataset, Job
 from gtm_hit.ops.access.roles import Somebody, may_know
 from gtm_hit.ops.calibration import replacing, versions
 from gtm_hit.ops.calibration.replacing import ReplacementError
+from gtm_hit.ops.drift import job as drift_job
 from gtm_hit.ops.jobs import queue
 from gtm_hit.ops.jobs.progress import percents
 
@@ -79,6 +80,7 @@ def confirm(job: Job, user: User | None = None) -> None:
         }
         job.result = {**job.result, **confirmed}
         job.save(update_fields=["result"])
+        drift_job.start_by_itself(job.dataset, user)
 
 
 def seen_by(user: Somebody, job: Job) -> dict[str, Any]:
