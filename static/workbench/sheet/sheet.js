@@ -53,6 +53,7 @@ export class Sheet {
     this._ahead = -1; // the frame whose pictures were asked for beforehand
     this._title = element("h2", {});
     this._count = element("p", { className: "sheet-count", role: "status" });
+    this._hint = element("p", { className: "sheet-hint" });
     this._list = element("ol", { className: "sheet-cells", role: "listbox", "aria-label": gettext("People") });
     this._empty = element("p", { className: "sheet-empty", hidden: true });
     this.element = element(
@@ -63,6 +64,7 @@ export class Sheet {
         { className: "sheet-head" },
         this._title,
         this._count,
+        this._hint,
         toolButton("validateNext", gettext("Accept the rest"), perform),
         toolButton("validateAll", gettext("Accept and go on"), perform),
         toolButton("sheet", gettext("Close"), perform),
@@ -158,12 +160,18 @@ export class Sheet {
   /** @param {Shown[]} shown */
   _tell(shown) {
     const { numbers, current } = this._store;
-    const words = { place: numbers.indexOf(current) + 1, n: numbers.length };
-    setText(this._title, gettext("Everybody of frame {place} of {n}", words));
+    const where = { place: numbers.indexOf(current) + 1, n: numbers.length };
+    setText(this._title, gettext("Everybody of frame {place} of {n}", where));
     /** @param {import("./slots.js").SlotState} state */
     const count = (state) => shown.filter((one) => one.state === state).length;
     const counts = { open: count("open"), doubtful: count("doubtful"), accepted: count("accepted") };
     setText(this._count, gettext("{open} to accept, {doubtful} doubtful, {accepted} accepted", counts));
+    const hints = { remove: keyFor("remove"), all: keyFor("validateNext") };
+    const hint = gettext(
+      "Click on the feet where a box is off · {remove}: nobody there · {all}: the rest is right",
+      hints,
+    );
+    setText(this._hint, shown.length ? hint : "");
     this._empty.hidden = shown.length > 0;
     const keys = { key: keyFor("sheet"), next: keyFor("nextFrame") };
     setText(

@@ -42,6 +42,8 @@ export class SheetActions {
     this._proposals = proposals;
     this._snapping = snapping;
     this._navigation = navigation;
+    /** @type {PointerEvent|null} where the pointer is over somebody */
+    this._last = null;
     const { element } = sheet;
     element.addEventListener("pointermove", (event) => this._hover(event));
     element.addEventListener("click", (event) => this._click(event));
@@ -59,13 +61,21 @@ export class SheetActions {
       remove: this._here(() => this._withOne((cell) => this._refuse(cell))),
       nextPerson: this._here(() => this._step(1)),
       previousPerson: this._here(() => this._step(-1)),
+      moveHere: this._here(() => this._last && this._click(this._last)),
       escape: this._here(() => this.toggle()),
     };
+    for (const id of ["round", "largeView", "zoom"]) rows[id] = (otherwise) => this._close(otherwise);
     for (const name of /** @type {Direction[]} */ (["left", "right", "up", "down"])) {
       rows[name] = this._here(() => this._withOne((cell) => this._push(cell, name, 1)));
       rows[`${name}Far`] = this._here(() => this._withOne((cell) => this._push(cell, name, FAR)));
     }
     return rows;
+  }
+
+  /** What is about the views shows them. @param {Otherwise} otherwise */
+  _close(otherwise) {
+    if (this._sheet.shown) this.toggle();
+    otherwise();
   }
 
   toggle() {
@@ -155,6 +165,7 @@ export class SheetActions {
   /** @param {PointerEvent} event */
   _hover(event) {
     const cell = this._sheet.cellAt(event.target);
+    this._last = cell && event;
     if (cell) this._sheet.focusOn(cell);
   }
 
