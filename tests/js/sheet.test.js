@@ -50,13 +50,15 @@ test("of three views those two are shown that tell both directions, and hidden f
   const box = { xmin: -20, ymin: -20, xmax: 20, ymax: 3000 };
   const front = { xmin: -1e4, ymin: -1e4, xmax: 1e4, ymax: 4000 };
   const scene = {
-    cameras: [0, 1, 2].map(() => ({ width: 4000, height: 4000 })),
+    cameras: ["A", "B", "C"].map((name) => ({ name, width: 4000, height: 4000 })),
     metres: () => ({ x: 20, y: 20 }),
     toImage: (view, ground) => seeing.toImage(view % 2, ground), // the third sees what the first one sees
     rectangles: (placed) => [placed.front ? front : box, box, box],
   };
   assert.deepEqual(tileViews(scene, {}, []).toSorted(), [0, 1]);
   assert.deepEqual(tileViews(scene, {}, [{ front: true }]).toSorted(), [1, 2]);
+  const evidence = new Map([["A", { box: null, hidden: false }]]);
+  assert.deepEqual(tileViews(scene, {}, [], evidence).toSorted(), [1, 2]);
 });
 
 test("the most doubtful come first, who is accepted last, and whoever was carried over to a proposal is in it", () => {

@@ -166,11 +166,7 @@ export class Sheet {
     const count = (state) => shown.filter((one) => one.state === state).length;
     const counts = { open: count("open"), doubtful: count("doubtful"), accepted: count("accepted") };
     setText(this._count, gettext("{open} to accept, {doubtful} doubtful, {accepted} accepted", counts));
-    const hints = { remove: keyFor("remove"), all: keyFor("validateNext") };
-    const hint = gettext(
-      "Click on the feet where a box is off · {remove}: nobody there · {all}: the rest is right",
-      hints,
-    );
+    const hint = gettext("Click on the feet to move a box · {key}: nobody there", { key: keyFor("remove") });
     setText(this._hint, shown.length ? hint : "");
     this._empty.hidden = shown.length > 0;
     const keys = { key: keyFor("sheet"), next: keyFor("nextFrame") };
