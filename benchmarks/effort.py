@@ -97,7 +97,9 @@ def print_row(name: str, report: dict[str, Any]) -> None:
     kinds = [report["counts"].get(kind, 0) for kind in ("arrow keys", "other keys", "clicks")]
     arrows, keys, clicks = (actions / report["persons"] for actions in kinds)
     near = f"   {100 * report['near']:.0f} % right" if report.get("near", 1) < 1 else ""
-    print(f"{name:<52}{arrows + keys + clicks:>6.2f}{arrows:>8.2f}{keys:>6.2f}{clicks:>8.2f}{near}", flush=True)
+    print(
+        f"{name:<52}{arrows + keys + clicks:>6.2f}{arrows:>8.2f}{keys:>6.2f}{clicks:>8.2f}{near}", flush=True
+    )
 
 
 def read_frames(path: Path) -> list[list[int]]:
