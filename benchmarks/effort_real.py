@@ -6,9 +6,9 @@ MultiviewX's five annotated frames, too, as the built-in detector finds them (`m
 same frames without proposals stand beside it.
 
 *Side by side* everybody is seen in two tiles; whoever stands wrong is clicked on there, and one key accepts
-the rest and goes on. Pointing at a tile counts as an action. *By the eye*: nothing tells the annotator whether
-somebody stands right; feet and ring are looked at in the tiles, as unsurely as the hand clicks, and the table
-says for how many that was right.
+the rest and goes on. Pointing at a tile counts as an action. *By the eye*: nothing tells the annotator
+whether somebody stands right; feet and ring are looked at in the tiles, as unsurely as the hand clicks, and
+the table says for how many that was right.
 """
 
 from __future__ import annotations
