@@ -46,6 +46,7 @@ export class Sheet {
     /** @type {SheetCell[]} */
     this.cells = [];
     this._number = -1; // of the frame they are of
+    this._stale = false; // they are of the frame before
     /** @type {SheetCell|null} the one that keys are about: under the pointer, or gone to */
     this.focus = null;
     /** @type {Set<SheetCell>} whoever has been in sight in this frame */
@@ -122,17 +123,22 @@ export class Sheet {
     };
   }
 
-  /** A frame is opened: its people get their places. */
+  /** A frame is opened: its people get their places when all of them are there, those carried over, too. */
   _begin() {
     this._number = this._store.current;
-    const frame = this._frame();
-    this.cells = slotsOf(frame).map((slot) => this._cell(slot));
+    this._stale = true;
     this.focus = null;
     this._seen = new Set();
+    this.later();
+  }
+
+  _arrive() {
+    if (!this._stale) return;
+    this._stale = false;
+    this.cells = slotsOf(this._frame()).map((slot) => this._cell(slot));
     this._list.replaceChildren(...this.cells.map((cell) => cell.element));
     this._list.scrollTop = 0;
-    this._update(frame);
-    this.later();
+    this._update();
   }
 
   /** @param {Slot} slot */
@@ -140,7 +146,8 @@ export class Sheet {
     return new SheetCell(this._scene, this._images, slot);
   }
 
-  _update(frame = this._frame()) {
+  _update() {
+    const frame = this._frame();
     const known = this.cells.map(({ slot }) => slot);
     const added = extended(known, frame).slice(known.length);
     for (const cell of added.map((slot) => this._cell(slot))) {
@@ -181,6 +188,7 @@ export class Sheet {
 
   paint() {
     if (!this.shown) return;
+    this._arrive();
     this._update();
     const size = { width: this._list.clientWidth / unit(), height: this._list.clientHeight / unit() };
     if (!size.width || !size.height) return;
@@ -211,6 +219,7 @@ export class Sheet {
 
   /** Open ones who have been in sight, and whether some have not. */
   rest() {
+    this._arrive();
     const open = this.cells.filter(({ shown }) => shown && isOpen(shown));
     const seen = open.filter((cell) => this._seen.has(cell));
     const shown = seen.flatMap((cell) => cell.shown ?? []);

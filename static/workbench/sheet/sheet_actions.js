@@ -4,6 +4,7 @@
  * @typedef {import("./sheet_cell.js").SheetCell} SheetCell
  * @typedef {import("./sheet_edits.js").Proposing} Proposing
  * @typedef {() => unknown} Otherwise what a key does while the sheet is closed
+ * @typedef {(otherwise: Otherwise, event: KeyboardEvent|null) => unknown} Row
  * @typedef {object} Parts
  * @property {Sheet} sheet
  * @property {import("../../truth/scene.js").Scene} scene
@@ -53,10 +54,10 @@ export class SheetActions {
 
   /** Rows around those of the table of actions: while the sheet is open they are about its people. */
   table() {
-    /** @type {Record<string, (otherwise: Otherwise) => unknown>} */
+    /** @type {Record<string, Row>} */
     const rows = {
-      validateNext: this._here(() => this._acceptRest()),
-      validateAll: this._here(() => this._acceptAndGoOn()),
+      validateNext: this._here((event) => event?.repeat || this._acceptRest()), // a key held down looks at nobody
+      validateAll: this._here((event) => event?.repeat || this._acceptAndGoOn()),
       validate: this._here(() => this._withOne((cell) => this._acceptOne(cell))),
       remove: this._here(() => this._withOne((cell) => this._refuse(cell))),
       nextPerson: this._here(() => this._step(1)),
@@ -82,9 +83,9 @@ export class SheetActions {
     this._sheet.show(!this._sheet.shown);
   }
 
-  /** @param {() => unknown} act @returns {(otherwise: Otherwise) => unknown} */
+  /** @param {(event: KeyboardEvent|null) => unknown} act @returns {Row} */
   _here(act) {
-    return (otherwise) => (this._sheet.shown ? act() : otherwise());
+    return (otherwise, event) => (this._sheet.shown ? act(event) : otherwise());
   }
 
   /** @returns {boolean} whether everybody is accepted or refused now */
@@ -96,9 +97,8 @@ export class SheetActions {
     }
     if (!unseen) return true;
     this._sheet.bring(unseen);
-    this._notices.say(
-      gettext("There are more below: look at them, and press {key} again", { key: keyFor("validateNext") }),
-    );
+    const words = { key: keyFor("validateNext") };
+    this._notices.say(gettext("Some have not been in sight yet: look at them, and press {key} again", words));
     return false;
   }
 
