@@ -38,8 +38,7 @@ SEED = 11
 SPREAD, MISSED, FALSE = 0.036, 0.01, 0.01  # metres along each axis, shares
 TYPES = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
 PAGE = """<!doctype html><link rel="stylesheet" href="/static/workbench/workbench.css">
-<link rel="stylesheet" href="/static/workbench/frames/time.css">
-<link rel="stylesheet" href="/static/workbench/sheet/sheet.css"><div id="workbench"></div>"""
+<link rel="stylesheet" href="/static/workbench/frames/time.css"><div id="workbench"></div>"""
 
 PLANS: dict[str, dict[str, Any]] = {
     "copies, arrow keys (the original's way)": {"copies": True},

@@ -5,10 +5,10 @@ is within 5 cm and validated; but frames, people and what is proposed are the de
 MultiviewX's five annotated frames, too, as the built-in detector finds them (`make detector`), linked. The
 same frames without proposals stand beside it.
 
-*Side by side* everybody is seen in two tiles; whoever stands wrong is clicked on there, and one key accepts the
-rest and goes on. Pointing at a tile counts as an action. *By the eye*: nothing tells the annotator whether somebody
-stands right; feet and ring are looked at in the tiles, as unsurely as the hand clicks, and the table says for
-how many that was right.
+*Side by side* everybody is seen in two tiles; whoever stands wrong is clicked on there, and one key accepts
+the rest and goes on. Pointing at a tile counts as an action. *By the eye*: nothing tells the annotator
+whether somebody stands right; feet and ring are looked at in the tiles, as unsurely as the hand clicks, and
+the table says for how many that was right.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from benchmarks.proposal_scores import Found, followed_people, is_annotated
 from benchmarks.proposals import Kept, run
 from gtm_hit.vision import detectors
 from gtm_hit.vision.boxes import Detector
+from gtm_hit.vision.people import Proposal
 from gtm_hit.vision.proposing import Method, Settings
 
 CERTAIN = 0.7  # least score of whom one key accepts, as the server says
@@ -92,7 +93,7 @@ def _positions(example: Example, frame: int) -> Iterator[tuple[int, int]]:
 def answer(example: Example, found: Found) -> dict[str, Any]:
     """What the server says about these proposals; whom the annotations cannot know is left out."""
     numbers, followed = count(), followed_people(found)
-    scores = {(frame, each.x, each.y): each.score for frame, one in enumerate(found) for each in one.people}
+    known = {(frame, each.x, each.y): each for frame, one in enumerate(found) for each in one.people}
     told: list[dict[str, Any]] = [
         {"number": frame * FRAME_STEP, "people": [], "refused": []} for frame in sorted(example.known)
     ]
@@ -101,9 +102,18 @@ def answer(example: Example, found: Found) -> dict[str, Any]:
         rows = (followed.frames == frame).nonzero()[0]
         rows = rows[is_annotated(example, followed.xy[rows], example.known[frame].xy)]
         for track, (x, y) in zip(identities[rows].tolist(), followed.xy[rows].tolist(), strict=True):
-            score = scores.get((frame, x, y), FILLED)
-            one["people"].append(person(next(numbers), track, (x, y), score, example.scene.grid))
+            each = known.get((frame, x, y))
+            score = each.score if each else FILLED
+            told_of = person(next(numbers), track, (x, y), score, example.scene.grid)
+            one["people"].append({**told_of, "evidence": evidence_of(each)})
     return {"run": 1, "threshold": CERTAIN, "frames": told}
+
+
+def evidence_of(each: Proposal | None) -> list[dict[str, Any]]:
+    return [
+        {"camera": view.camera, "box": view.box, "seen": None, "hidden": view.hidden}
+        for view in (each.evidence if each else ())
+    ]
 
 
 if __name__ == "__main__":

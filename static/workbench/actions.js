@@ -11,20 +11,11 @@ export class Actions {
     this._table = {};
   }
 
-  /** @param {ActionTable} table */
+  /** @param {ActionTable} table @returns {ActionTable} all rows as they were before */
   use(table) {
-    Object.assign(this._table, table);
-  }
-
-  /**
-   * Rows that mean something else at times: `otherwise` does what they did before.
-   * @param {Record<string, (otherwise: () => unknown, event: KeyboardEvent|null) => unknown>} table
-   */
-  around(table) {
-    for (const [id, row] of Object.entries(table)) {
-      const before = this._table[id];
-      this._table[id] = (event) => row(() => before?.(event), event);
-    }
+    const before = this._table;
+    this._table = { ...before, ...table };
+    return before;
   }
 
   /** @param {string} id @param {KeyboardEvent|null} [event] of a key; a button has none */

@@ -74,6 +74,7 @@ export class Bar {
       this._saved,
       this._button("undo", "↶", { "aria-label": gettext("Undo") }),
       this._button("redo", "↷", { "aria-label": gettext("Redo") }),
+      this._button("sheet", gettext("Side by side")),
       ...this._toggles.map(({ button }) => button),
       this._button("views", gettext("Views")),
       element(

@@ -12,7 +12,7 @@ const ABOUT_PERSON = [
 ];
 
 /**
- * Buttons under the list of people, for mouse and touch: who is who, clicks on heads, the frame's history, everybody side by side.
+ * Buttons under the list of people, for mouse and touch: who is who, clicks on heads, the frame's history.
  * @param {import("../../truth/store.js").Store} store
  * @param {(id: string) => void} perform by the ids of the key table
  * @param {import("../placing/heads.js").Heads} heads
@@ -26,6 +26,5 @@ export function panelTools(store, perform, heads) {
   byHead.setAttribute("aria-pressed", "false");
   heads.on("change", ({ on }) => byHead.setAttribute("aria-pressed", String(on)));
   const history = toolButton("history", gettext("History"), perform);
-  const sheet = toolButton("sheet", gettext("Side by side"), perform);
-  return element("div", { className: "panel-tools" }, person, byHead, history, sheet);
+  return element("div", { className: "panel-tools" }, person, byHead, history);
 }

@@ -11,6 +11,7 @@
  * @typedef {{xx: number, xy: number, yy: number, x: number, y: number}} Normal equations of least squares
  */
 const ROUNDS = 12;
+const FREEDOM = 3; // degrees of freedom: somebody can be much farther off than is usual
 const BESIDE = 0.01; // metres by which slopes are measured
 
 /**
@@ -31,13 +32,14 @@ export function footFrom(scene, known, clicks) {
 }
 
 /**
- * The farther away somebody turns out to be, the less was known (Cauchy's distribution).
+ * The farther away somebody turns out to be, the less was known (Student's distribution).
  * @param {Seeing} scene @param {Known} known @param {Click[]} clicks @param {XY} at @returns {XY|null}
  */
 function stepFrom(scene, known, clicks, at) {
   /** @type {Normal} */
   const sum = { xx: 0, xy: 0, yy: 0, x: 0, y: 0 };
-  const sigma = Math.hypot(known.sigma, known.x - at.x, known.y - at.y);
+  const far = Math.hypot(known.x - at.x, known.y - at.y) / known.sigma;
+  const sigma = known.sigma * Math.sqrt((FREEDOM + far ** 2) / (FREEDOM + 2));
   add(sum, { x: 1, y: 0 }, known.x - at.x, sigma);
   add(sum, { x: 0, y: 1 }, known.y - at.y, sigma);
   for (const { view, pixel, sigma } of clicks) {

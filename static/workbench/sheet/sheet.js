@@ -46,6 +46,7 @@ export class Sheet {
     /** @type {SheetCell[]} */
     this.cells = [];
     this._number = -1; // of the frame they are of
+    this._stale = false; // they are of the frame before
     /** @type {SheetCell|null} the one that keys are about: under the pointer, or gone to */
     this.focus = null;
     /** @type {Set<SheetCell>} whoever has been in sight in this frame */
@@ -53,6 +54,7 @@ export class Sheet {
     this._ahead = -1; // the frame whose pictures were asked for beforehand
     this._title = element("h2", {});
     this._count = element("p", { className: "sheet-count", role: "status" });
+    this._hint = element("p", { className: "sheet-hint" });
     this._list = element("ol", { className: "sheet-cells", role: "listbox", "aria-label": gettext("People") });
     this._empty = element("p", { className: "sheet-empty", hidden: true });
     this.element = element(
@@ -63,6 +65,7 @@ export class Sheet {
         { className: "sheet-head" },
         this._title,
         this._count,
+        this._hint,
         toolButton("validateNext", gettext("Accept the rest"), perform),
         toolButton("validateAll", gettext("Accept and go on"), perform),
         toolButton("sheet", gettext("Close"), perform),
@@ -120,17 +123,22 @@ export class Sheet {
     };
   }
 
-  /** A frame is opened: its people get their places. */
+  /** A frame is opened: its people get their places when all of them are there, those carried over, too. */
   _begin() {
     this._number = this._store.current;
-    const frame = this._frame();
-    this.cells = slotsOf(frame).map((slot) => this._cell(slot));
+    this._stale = true;
     this.focus = null;
     this._seen = new Set();
+    this.later();
+  }
+
+  _arrive() {
+    if (!this._stale) return;
+    this._stale = false;
+    this.cells = slotsOf(this._frame()).map((slot) => this._cell(slot));
     this._list.replaceChildren(...this.cells.map((cell) => cell.element));
     this._list.scrollTop = 0;
-    this._update(frame);
-    this.later();
+    this._update();
   }
 
   /** @param {Slot} slot */
@@ -138,7 +146,8 @@ export class Sheet {
     return new SheetCell(this._scene, this._images, slot);
   }
 
-  _update(frame = this._frame()) {
+  _update() {
+    const frame = this._frame();
     const known = this.cells.map(({ slot }) => slot);
     const added = extended(known, frame).slice(known.length);
     for (const cell of added.map((slot) => this._cell(slot))) {
@@ -158,12 +167,14 @@ export class Sheet {
   /** @param {Shown[]} shown */
   _tell(shown) {
     const { numbers, current } = this._store;
-    const words = { place: numbers.indexOf(current) + 1, n: numbers.length };
-    setText(this._title, gettext("Everybody of frame {place} of {n}", words));
+    const where = { place: numbers.indexOf(current) + 1, n: numbers.length };
+    setText(this._title, gettext("Everybody of frame {place} of {n}", where));
     /** @param {import("./slots.js").SlotState} state */
     const count = (state) => shown.filter((one) => one.state === state).length;
     const counts = { open: count("open"), doubtful: count("doubtful"), accepted: count("accepted") };
     setText(this._count, gettext("{open} to accept, {doubtful} doubtful, {accepted} accepted", counts));
+    const hint = gettext("Click on the feet to move a box · {key}: nobody there", { key: keyFor("remove") });
+    setText(this._hint, shown.length ? hint : "");
     this._empty.hidden = shown.length > 0;
     const keys = { key: keyFor("sheet"), next: keyFor("nextFrame") };
     setText(
@@ -177,6 +188,7 @@ export class Sheet {
 
   paint() {
     if (!this.shown) return;
+    this._arrive();
     this._update();
     const size = { width: this._list.clientWidth / unit(), height: this._list.clientHeight / unit() };
     if (!size.width || !size.height) return;
@@ -207,6 +219,7 @@ export class Sheet {
 
   /** Open ones who have been in sight, and whether some have not. */
   rest() {
+    this._arrive();
     const open = this.cells.filter(({ shown }) => shown && isOpen(shown));
     const seen = open.filter((cell) => this._seen.has(cell));
     const shown = seen.flatMap((cell) => cell.shown ?? []);

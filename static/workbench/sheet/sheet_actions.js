@@ -4,6 +4,7 @@
  * @typedef {import("./sheet_cell.js").SheetCell} SheetCell
  * @typedef {import("./sheet_edits.js").Proposing} Proposing
  * @typedef {() => unknown} Otherwise what a key does while the sheet is closed
+ * @typedef {(otherwise: Otherwise, event: KeyboardEvent|null) => unknown} Row
  * @typedef {object} Parts
  * @property {Sheet} sheet
  * @property {import("../../truth/scene.js").Scene} scene
@@ -42,6 +43,8 @@ export class SheetActions {
     this._proposals = proposals;
     this._snapping = snapping;
     this._navigation = navigation;
+    /** @type {PointerEvent|null} where the pointer is over somebody */
+    this._last = null;
     const { element } = sheet;
     element.addEventListener("pointermove", (event) => this._hover(event));
     element.addEventListener("click", (event) => this._click(event));
@@ -51,16 +54,18 @@ export class SheetActions {
 
   /** Rows around those of the table of actions: while the sheet is open they are about its people. */
   table() {
-    /** @type {Record<string, (otherwise: Otherwise) => unknown>} */
+    /** @type {Record<string, Row>} */
     const rows = {
-      validateNext: this._here(() => this._acceptRest()),
-      validateAll: this._here(() => this._acceptAndGoOn()),
+      validateNext: this._here((event) => event?.repeat || this._acceptRest()), // a key held down looks at nobody
+      validateAll: this._here((event) => event?.repeat || this._acceptAndGoOn()),
       validate: this._here(() => this._withOne((cell) => this._acceptOne(cell))),
       remove: this._here(() => this._withOne((cell) => this._refuse(cell))),
       nextPerson: this._here(() => this._step(1)),
       previousPerson: this._here(() => this._step(-1)),
+      moveHere: this._here(() => this._last && this._click(this._last)),
       escape: this._here(() => this.toggle()),
     };
+    for (const id of ["round", "largeView", "zoom"]) rows[id] = (otherwise) => this._close(otherwise);
     for (const name of /** @type {Direction[]} */ (["left", "right", "up", "down"])) {
       rows[name] = this._here(() => this._withOne((cell) => this._push(cell, name, 1)));
       rows[`${name}Far`] = this._here(() => this._withOne((cell) => this._push(cell, name, FAR)));
@@ -68,13 +73,19 @@ export class SheetActions {
     return rows;
   }
 
+  /** What is about the views shows them. @param {Otherwise} otherwise */
+  _close(otherwise) {
+    if (this._sheet.shown) this.toggle();
+    otherwise();
+  }
+
   toggle() {
     this._sheet.show(!this._sheet.shown);
   }
 
-  /** @param {() => unknown} act @returns {(otherwise: Otherwise) => unknown} */
+  /** @param {(event: KeyboardEvent|null) => unknown} act @returns {Row} */
   _here(act) {
-    return (otherwise) => (this._sheet.shown ? act() : otherwise());
+    return (otherwise, event) => (this._sheet.shown ? act(event) : otherwise());
   }
 
   /** @returns {boolean} whether everybody is accepted or refused now */
@@ -86,9 +97,8 @@ export class SheetActions {
     }
     if (!unseen) return true;
     this._sheet.bring(unseen);
-    this._notices.say(
-      gettext("There are more below: look at them, and press {key} again", { key: keyFor("validateNext") }),
-    );
+    const words = { key: keyFor("validateNext") };
+    this._notices.say(gettext("Some have not been in sight yet: look at them, and press {key} again", words));
     return false;
   }
 
@@ -155,6 +165,7 @@ export class SheetActions {
   /** @param {PointerEvent} event */
   _hover(event) {
     const cell = this._sheet.cellAt(event.target);
+    this._last = cell && event;
     if (cell) this._sheet.focusOn(cell);
   }
 

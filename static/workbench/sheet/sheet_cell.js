@@ -63,7 +63,8 @@ export class SheetCell {
   /** @param {Shown} shown @param {Placed[]} others everybody else of the frame */
   update(shown, others) {
     if (!this.shown) {
-      const views = tileViews(this._scene, shown.placed, others);
+      const evidence = new Map(shown.slot.proposal?.evidence.map((one) => [one.camera, one]));
+      const views = tileViews(this._scene, shown.placed, others, evidence);
       this.anchors = views.flatMap((view) => anchorOf(this._scene, shown.placed, view) ?? []);
     }
     if (shown.placed.position !== this.put) this.forget();
