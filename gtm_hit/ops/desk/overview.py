@@ -32,6 +32,11 @@ class Step:
     verdict: Verdict
     words: str
 
+    @property
+    def usable(self) -> bool:
+        """Whether one can go on from here."""
+        return self.verdict in {Verdict.GOOD, Verdict.USABLE}
+
 
 @dataclass(frozen=True)
 class CameraSteps:

@@ -139,6 +139,8 @@ def _context(request: StaffRequest, desk: Desk, row: DeskCamera, form: BoardForm
     job = lens_job.jobs_of(desk, row.name).first()
     chosen = next((each for each in pictures if str(each.pk) == request.GET.get("view")), None)
     steps = edits.steps(desk, edits.lens_page(row.name))
+    step = overview.lens_step(row)
+    running = job is not None and not job.finished
     return {
         **frame(desk, "lens"),
         "camera": row,
@@ -146,7 +148,8 @@ def _context(request: StaffRequest, desk: Desk, row: DeskCamera, form: BoardForm
         "form": form,
         "model_form": ModelForm(initial=boards.model_of(row).as_json()),
         "file_form": LensFileForm(),
-        "step": overview.lens_step(row),
+        "step": step,
+        "next_step": overview.overview(desk).next_step if step.usable and not running else None,
         "report": row.lens_report,
         "parameters": lens_view.parameters(row),
         "bars": lens_view.bars(row, pictures),
@@ -166,8 +169,12 @@ def _context(request: StaffRequest, desk: Desk, row: DeskCamera, form: BoardForm
 
 
 def _initial(row: DeskCamera) -> dict[str, Any]:
-    """The board asked for last; the page speaks of millimetres."""
-    board = (row.board or {}).get("board")
+    """The board asked for last, for this camera or else for another one of the desk: most labs have one board.
+
+    The page speaks of millimetres.
+    """
+    others = row.desk.cameras.filter(board__isnull=False).order_by("index").values_list("board", flat=True)
+    board = (row.board or others.last() or {}).get("board")
     return {**board, "spacing": round(1000 * board["spacing"], 6)} if board else USUAL
 
 
