@@ -73,7 +73,7 @@ class SideSerializer(serializers.Serializer[Any]):
     words = serializers.CharField()
 
 
-class LensNumbersSerializer(serializers.Serializer[Any]):
+class ComparedLensSerializer(serializers.Serializer[Any]):
     fx = serializers.FloatField(help_text="pixels")
     fy = serializers.FloatField(help_text="pixels")
     cx = serializers.FloatField(help_text="pixels")
@@ -93,8 +93,8 @@ class CameraDifferenceSerializer(serializers.Serializer[Any]):
     centre_cm = serializers.FloatField(help_text="from centre to centre")
     centre_along_cm = serializers.ListField(child=serializers.FloatField(), help_text="along X, Y and Z")
     rotation_degrees = serializers.FloatField()
-    before = LensNumbersSerializer()
-    after = LensNumbersSerializer()
+    before = ComparedLensSerializer()
+    after = ComparedLensSerializer()
     distortion_px = serializers.FloatField(
         allow_null=True, help_text="what the change of distortion alone moves, at the worst place"
     )

@@ -93,15 +93,26 @@ def as_grey(pixels: np.ndarray) -> Grey:
 def _of_folder(path: Path) -> Source:
     files = sorted(file for file in path.iterdir() if _is_picture(file.name) and file.is_file())
     if not files:
-        videos = sorted(file.name for file in path.iterdir() if file.suffix.lower() in VIDEOS)
-        hint = f" For the video in it, give {videos[0]} itself." if videos else ""
-        raise SourceError(f"There are no pictures in {path}.{hint}")
+        raise SourceError(f"There are no pictures in {path}.{_hint(path)}")
 
     def load(file: Path) -> bytes:
         with file.open("rb") as stream:
             return stream.read(MOST_BYTES + 1)
 
     return _of_files({file.name: partial(load, file) for file in files})
+
+
+def _hint(path: Path) -> str:
+    """What was probably meant instead of a folder without pictures."""
+    videos = sorted(file.name for file in path.iterdir() if file.suffix.lower() in VIDEOS)
+    if videos:
+        return f" For the video in it, give {videos[0]} itself."
+    folders = sorted(each for each in path.iterdir() if each.is_dir() and each.name[0] != ".")
+    holding = [each.name for each in folders if any(_is_picture(file.name) for file in each.iterdir())]
+    if not holding:
+        return ""
+    others = f" (or {', '.join(holding[1:4])}{', …' if len(holding) > 4 else ''})" if holding[1:] else ""
+    return f" There are some in its folder {holding[0]}{others}: give that one, one camera at a time."
 
 
 def _of_zip(path: Path) -> Source:

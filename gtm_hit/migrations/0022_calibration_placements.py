@@ -8,7 +8,7 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('gtm_hit', '0020_kept_points'),
+        ('gtm_hit', '0021_adjust'),
         migrations.swappable_dependency(settings.AUTH_USER_MODEL),
     ]
 

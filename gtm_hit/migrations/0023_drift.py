@@ -8,7 +8,7 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('gtm_hit', '0020_kept_points'),
+        ('gtm_hit', '0022_calibration_placements'),
         migrations.swappable_dependency(settings.AUTH_USER_MODEL),
     ]
 
@@ -16,7 +16,7 @@ class Migration(migrations.Migration):
         migrations.AlterField(
             model_name='job',
             name='kind',
-            field=models.CharField(choices=[('export_layer', 'export of a layer'), ('import_dataset', 'import of a dataset'), ('import_videos', 'import of videos'), ('import_annotations', 'import of annotations'), ('replace_calibration', 'change of calibration'), ('make_release', 'release'), ('stitch', 'stitching into ground truth'), ('send_outbox', 'messages to a platform'), ('propose', 'proposals of people'), ('solve_lens', 'lens from pictures of a board'), ('drift', 'drift of cameras'), ('sync_videos', "guess of videos' offsets")], max_length=40),
+            field=models.CharField(choices=[('export_layer', 'export of a layer'), ('import_dataset', 'import of a dataset'), ('import_videos', 'import of videos'), ('import_annotations', 'import of annotations'), ('replace_calibration', 'change of calibration'), ('make_release', 'release'), ('stitch', 'stitching into ground truth'), ('send_outbox', 'messages to a platform'), ('propose', 'proposals of people'), ('solve_lens', 'lens from pictures of a board'), ('adjust', 'adjustment of cameras'), ('drift', 'drift of cameras'), ('sync_videos', "guess of videos' offsets")], max_length=40),
         ),
         migrations.CreateModel(
             name='DriftCheck',

@@ -113,7 +113,7 @@ def find_lens(hand: Hand, camera: Camera, files: Belongings) -> None:
 
 
 def click_ground(hand: Hand, camera: Camera) -> None:
-    """Four marks by the mouse, far from each other; the others where they are expected, unless that looks wrong."""
+    """Four marks by the mouse, far apart; the others where they are expected, unless that looks wrong."""
     page, places = hand.page, scene.seen(camera)
     for count, name in enumerate(_spread(places), start=1):
         hand.click(page.locator(f"tr[data-point={name}]"))

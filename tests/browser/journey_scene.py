@@ -1,4 +1,4 @@
-"""What a lab has before it calibrates seven cameras: videos of a board, pictures of marks, frames with people."""
+"""What a lab has before it calibrates seven cameras: videos of a board, pictures of marks, frames."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From seven cameras somewhere to a dataset whose rectangles are right, by web server, worker and Chromium."""
+"""From seven cameras somewhere to a dataset with right rectangles: web server, worker and Chromium."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from gtm_hit.geometry.table import RectangleTable
 from tests.browser import journey, story
 from tests.browser import journey_scene as scene
 from tests.browser.journey import Hand
-from tests.browser.journey_scene import Belongings
 from tests.browser.story_scene import PASSWORD
 from tests.browser.street import CYLINDER, GRID
 from tests.ops.site import Site
@@ -70,13 +69,14 @@ def test_seven_cameras_become_a_dataset_whose_rectangles_are_right(
         journey.import_dataset(who, files)
     share, worst = near_the_truth(site)
     told = ", ".join(f"{name} {seconds:.1f} s" for name, seconds in who.seconds.items())
-    print(f"\n{who.touches} clicks and keys; {told}; {100 * share:.2f} % within {NEAR} px, worst camera {worst}")
+    near = f"{100 * share:.2f} % within {NEAR} px, worst camera {worst}"
+    print(f"\n{who.touches} clicks and keys; {told}; {near}")
     assert who.touches <= MOST_TOUCHES
     assert share >= SHARE
 
 
 def near_the_truth(site: Site) -> tuple[float, str]:
-    """Of the positions that the true cameras see, the share whose rectangle is right; and the worst camera's."""
+    """Of the positions that the true cameras see, the share that is right; and the worst camera's."""
     (path,) = site.folder.rglob("rectangles-*.bin")
     made = RectangleTable.open(path)
     true = RectangleTable.build(site.folder / "truth", scene.cameras(), GRID, CYLINDER, FootRule.CORNERS)

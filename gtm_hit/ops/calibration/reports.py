@@ -151,7 +151,11 @@ def _adjust(report: dict[str, Any]) -> Section | None:
 
 
 def _adjust_facts(adjust: dict[str, Any]) -> Iterator[Fact]:
+    if "number" in adjust:
+        yield Fact("Result", str(adjust["number"]))
     yield Fact("Variant", adjust.get("variant") or NONE)
+    if adjust.get("ended"):
+        yield Fact("Not as adjusted", ", ".join(adjust["ended"]))
     for name, value in (adjust.get("settings") or {}).items():
         if not isinstance(value, dict | list):
             yield Fact(name.replace("_", " "), NONE if value is None else str(value))

@@ -84,7 +84,7 @@ def report(desk: Desk) -> dict[str, Any]:
     return {
         "desk": desk.slug,
         "step": last.number if last else 0,
-        "adjusted": _of_result(desk, used) if used.number is not None else None,
+        "adjust": _of_result(desk, used) if used.number is not None else None,
         "points": {"count": len(points), "digest": _digest(points)},
         "cameras": [_of_camera(row) for row in desk.cameras.order_by("index")],
     }
@@ -126,17 +126,21 @@ def _files(desk: Desk) -> Iterator[tuple[str, bytes]]:
 
 
 def _of_result(desk: Desk, used: adjust_results.InUse) -> dict[str, Any]:
+    """All that the adjustment told, with what it was asked and what it began from."""
     found = adjust_results.result_of(desk, used.number)
     told: dict[str, Any] = found.report or {}
-    figures = {
-        name: told.get(name) for name in ("cost", "median_px", "measured_after", "hold_out", "monotone")
-    }
+    chosen = {name: value for name, value in found.choices.items() if name not in ("variant", "hold")}
+    clicks, measured = found.inputs["clicks"], found.inputs["measured"]
     return {
+        **told,
         "number": found.number,
-        "inputs": found.of,
-        "choices": found.choices,
+        "settings": {**chosen, "hold": ", ".join(found.choices["hold"]) or None},
+        "inputs": {
+            "all": {"digest": found.of},
+            "clicks": {"count": len(clicks), "digest": _digest(clicks)},
+            "measured_points": {"count": len(measured), "digest": _digest(measured)},
+        },
         "ended": used.ended,
-        **figures,
     }
 
 

@@ -169,7 +169,7 @@ def _context(request: StaffRequest, desk: Desk, row: DeskCamera, form: BoardForm
 
 
 def _initial(row: DeskCamera) -> dict[str, Any]:
-    """The board asked for last, for this camera or else for another one of the desk: most labs have one board.
+    """The board asked for last, for this camera or else for another one: most labs have one board.
 
     The page speaks of millimetres.
     """

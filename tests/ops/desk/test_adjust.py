@@ -52,7 +52,7 @@ def test_a_result_that_is_used_brings_the_cameras_nearer_to_the_truth(desk: Desk
     assert misplaced(desk) == before, "nothing moves before somebody says so"
     adjust_results.use(desk, found.number)
     assert misplaced(desk) < 0.6 * before
-    assert placing.report(desk)["adjusted"]["number"] == found.number
+    assert placing.report(desk)["adjust"]["number"] == found.number
     assert overview.overview(desk).adjust.verdict is overview.Verdict.GOOD
 
 
