@@ -14,7 +14,7 @@ from rest_framework.response import Response
 
 from gtm_hit.api.calibration import MovedInCameraSerializer
 from gtm_hit.api.common.refusals import valid
-from gtm_hit.api.common.staff import READS, Pages, StaffView, answers, dataset_or_404, invalid
+from gtm_hit.api.common.staff import ASKS, READS, Pages, StaffView, answers, dataset_or_404, invalid
 from gtm_hit.models import Calibration, CalibrationPlacement, Dataset
 from gtm_hit.ops.access.roles import Role
 from gtm_hit.ops.calibration import versions
@@ -170,7 +170,7 @@ class Differences(StaffView):
             OpenApiParameter("before", str, required=True, description=SIDE),
             OpenApiParameter("after", str, required=True, description="the same"),
         ],
-        responses=answers(200, DifferenceSerializer, READS),
+        responses=answers(200, DifferenceSerializer, ASKS),
     )
     def get(self, request: Request, slug: str) -> Response:
         dataset = dataset_or_404(slug)

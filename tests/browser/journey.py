@@ -107,7 +107,9 @@ def find_lens(hand: Hand, camera: Camera, files: Belongings) -> None:
     if camera.index == 0:
         expect(page.locator("progress[data-job-progress]")).to_be_visible()
         hand.shoot("04-lens-running")
-    expect(page.locator(".desk-lens .verdict.is-good")).to_be_visible(timeout=90_000)
+    # C6 looks a sixth beside its middle, as the real one does: usable, as the page says.
+    verdict = page.locator(".desk-lens .verdict:is(.is-good, .is-usable)")
+    expect(verdict).to_be_visible(timeout=90_000)
     if camera.index == 0:
         hand.shoot("05-lens-good")
 

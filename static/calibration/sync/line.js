@@ -143,10 +143,10 @@ function put(field, value) {
 
 /** @param {Store} store @param {Clock} clock */
 function differs(store, clock) {
-  const { event, anchor } = store;
+  const { event, markReference } = store;
   if (!event || event.marks[clock.file] === undefined) return event ? "–" : "";
-  if (clock === anchor) return "told from here";
-  const later = apart(event, clock, anchor) ?? 0;
+  if (clock === markReference) return "told from here";
+  const later = apart(event, clock, markReference) ?? 0;
   return `${signed(later)} · ${inPictures(later, store.video(clock).interval)}`;
 }
 

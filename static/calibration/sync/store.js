@@ -69,7 +69,7 @@ export class Store extends Emitter {
   }
 
   /** What the others' marks of the event are told from: the reference, else the first video that has a mark. */
-  get anchor() {
+  get markReference() {
     const { event, reference } = this;
     if (!event || event.marks[reference.file] !== undefined) return reference;
     return this.clocks.find(({ file }) => event.marks[file] !== undefined) ?? reference;
@@ -200,8 +200,8 @@ export class Store extends Emitter {
 
   /** All videos in which the event is marked are put so that it is at one shared time. */
   setByEvent() {
-    const { event, anchor } = this;
-    if (event) this._change({ clocks: this.clocks.map((clock) => setBy(event, clock, anchor)) });
+    const { event, markReference } = this;
+    if (event) this._change({ clocks: this.clocks.map((clock) => setBy(event, clock, markReference)) });
   }
 
   /** What the events say about drift, for each video that has two; by file. */
