@@ -58,9 +58,9 @@ function showCamera() {
   picture.show(shown);
   magnifier.show(shown);
   part("empty").hidden = Boolean(shown);
-  for (const field of page.querySelectorAll("[data-of-camera]"))
+  for (const field of document.querySelectorAll("[data-of-camera]"))
     if (field instanceof HTMLInputElement) field.value = camera?.name ?? "";
-  for (const word of page.querySelectorAll("[data-camera-name]")) setText(word, camera?.name ?? "");
+  for (const word of document.querySelectorAll("[data-camera-name]")) setText(word, camera?.name ?? "");
 }
 
 /** @param {"undo"|"redo"} what */
