@@ -1,9 +1,9 @@
 """How many clicks it takes until all measured points are in a picture, once four of them are.
 
-As on the desk's page *Ground*: after each click the pose is solved, and every other point is expected somewhere.
-Where that is within a pixel of the place, it is confirmed (one key). Where the place is seen under the
-magnifier and nearer to its own expected point than to any other's, it is clicked (one click). Else the point is
-chosen by its name before it is clicked (two).
+As on the desk's page *Ground*: after each click the pose is solved, and every other point is expected
+somewhere. Where that is within a pixel of its place, it is confirmed (one key). Where its place is seen under
+the magnifier, and nearer to where it is expected than to any other such place, it is clicked (one click). Else
+it is chosen by its name before it is clicked (two).
 """
 
 from __future__ import annotations

@@ -55,14 +55,10 @@ class Solved:
 def rows(data: Path | None) -> list[Row]:
     """Lines of the table; where FOLDER has no real pairs theirs say so."""
     folder = real_data(data) / "wildtrack_ba"
-    real, made = (
-        Bars("150 published pairs", f"≤ {MOST_OFF} cm"),
-        Bars("pairs of own cameras", "≤ 3 of its own σ"),
-    )
-    found = (
-        list(_rows(real, published(folder))) if folder.is_dir() else list(absent(real.every, told(folder)))
-    )
-    return [*found, *_rows(made, synthesised(seed=7))]
+    real = Bars("150 published pairs", f"≤ {MOST_OFF} cm")
+    made = Bars("pairs of own cameras", "≤ 3 of its own σ")
+    measured = _rows(real, published(folder)) if folder.is_dir() else absent(real.every, told(folder))
+    return [*measured, *_rows(made, synthesised(seed=7))]
 
 
 def published(folder: Path) -> list[Clicked]:

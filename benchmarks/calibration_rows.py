@@ -49,7 +49,7 @@ def in_part(part: str, rows: Sequence[Row]) -> list[Row]:
 def real_data(data: Path | None) -> Path:
     """The folder that has `wildtrack_ba` and the others; DATA itself or `calibration` in it."""
     if data is None:
-        return Path("--data FOLDER")
+        return Path("FOLDER")
     return data / "calibration" if (data / "calibration").is_dir() else data
 
 
