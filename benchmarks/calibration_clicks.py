@@ -2,8 +2,8 @@
 
 As on the desk's page *Ground*: after each click the pose is solved, and every other point is expected
 somewhere. Where that is within a pixel of its place, it is confirmed (one key). Where its place is seen under
-the magnifier, and nearer to where it is expected than to any other such place, it is clicked (one click). Else
-it is chosen by its name before it is clicked (two).
+the magnifier, and nearer to where it is expected than to any other such place, it is clicked (one click).
+Else it is chosen by its name before it is clicked (two).
 """
 
 from __future__ import annotations

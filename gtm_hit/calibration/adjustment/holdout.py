@@ -52,7 +52,8 @@ def leave_one_view_out(views: Sequence[View], seen: Seen, free: int, turn: float
     found = settled(rows, nowhere, others, sure, turn)
     asked_of = _sorted(Seen(seen.cameras[left], np.arange(left.size), seen.pixels[left], np.ones(left.size)))
     missed = misses(rows, found, asked_of)[sure[asked_of.points]]
-    return HoldOut(np.unique(seen.points[left][sure]).size, np.hypot(missed[:, 0], missed[:, 1]), int((~sure).sum()))
+    lengths = np.hypot(missed[:, 0], missed[:, 1])
+    return HoldOut(np.unique(seen.points[left][sure]).size, lengths, int((~sure).sum()))
 
 
 def _others(seen: Seen, left: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

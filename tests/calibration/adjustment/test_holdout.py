@@ -32,7 +32,7 @@ def test_a_bad_click_among_many_spoils_no_other_view() -> None:
 
 def test_what_the_others_see_along_one_ray_is_counted_and_not_foretold() -> None:
     first, second = true_cameras(2)
-    beside = replace(first, name="beside", tvec=first.tvec + (0.002, 0.0, 0.0))
+    beside = replace(first, name="beside", tvec=first.tvec + np.array([0.002, 0.0, 0.0]))
     points = people(40, np.random.default_rng(1))
     found = held_out([first, beside, second], points)
     assert found.undetermined == found.points > 10
