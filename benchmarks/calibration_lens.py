@@ -1,29 +1,26 @@
 """Lenses from boards: `python -m benchmarks.calibration_lens [--data FOLDER]`.
 
-Rendered boards need nothing: pictures are made through a lens that is known. FOLDER holds real pictures:
-`chessboard_opencv_left`, `pose2sim_chessboard`, `charuco_4x5_masked`, `acircles_photos`; what is not there
-is left out. Times are of one core (OpenCV's threads are switched off).
+Rendered boards need nothing: pictures are made through a lens that is known. FOLDER holds photographs
+(`calibration_photographs`). Times are of one core (OpenCV's threads are switched off).
 """
 
 from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import cv2
 import numpy as np
 
-from benchmarks.calibration_rows import Row, table
+from benchmarks.calibration_photographs import one_sided_circles, real, sheared_view
+from benchmarks.calibration_rows import Row, real_data, table
 from gtm_hit.calibration.boards import Board, BoardKind
 from gtm_hit.calibration.detection import find_board
-from gtm_hit.calibration.intrinsics import LensSolution, solve_lens
+from gtm_hit.calibration.intrinsics import solve_lens
 from gtm_hit.calibration.lens_numbers import Lens
-from gtm_hit.calibration.searching import Searched, search
-from gtm_hit.calibration.sources import decoded
-from gtm_hit.calibration.verdict import Word, judge, worst_view
-from gtm_hit.calibration.views import BoardView, NotFound, Picture
+from gtm_hit.calibration.searching import search
+from gtm_hit.calibration.views import BoardView, Picture
 from gtm_hit.demo.boards import board_picture, placements
 
 SMALL, FULL = (960, 540), (1920, 1080)
@@ -42,8 +39,9 @@ def rows(data: Path | None) -> list[Row]:
     cv2.setNumThreads(1)
     try:
         found = [row for board in BOARDS for row in rendered(board)]
-        found += times()
-        return found + (list(real(data)) if data else [])
+        found += sheared_view(pictures(BOARDS[0], SMALL, VIEWS), BOARDS[0])
+        found += one_sided_circles()
+        return [*found, *times(), *real(real_data(data))]
     finally:
         cv2.setNumThreads(threads)
 
@@ -70,7 +68,7 @@ def rendered(board: Board) -> list[Row]:
     centre = float(np.abs(solution.lens.matrix[:2, 2] - true[:2, 2]).max())
     name = f"rendered {board.kind}{', inverted, legacy' if board.legacy else ''}"
     return [
-        Row(f"{name}: found", f"{len(found.views)} of {VIEWS}", "-", None),
+        Row(f"{name}: found", f"{len(found.views)} of {VIEWS}", "all", len(found.views) == VIEWS),
         Row(f"{name}: fx off", f"{focal:.3f} %", "≤ 0.1 %", focal <= 0.1),
         Row(f"{name}: centre off", f"{centre:.2f} px", "≤ 0.5 px", centre <= 0.5),
         Row(f"{name}: RMS", f"{solution.rms:.3f} px", "≤ 0.06 px", solution.rms <= 0.06),
@@ -101,77 +99,6 @@ def times() -> list[Row]:
         Row(f"{len(views)} full-HD views solved", f"{solved:.2f} s", "≤ 2 s", solved <= 2),
         Row("a view switched off, solved again", f"{again:.2f} s", "< 1 s", again < 1),
     ]
-
-
-def real(data: Path) -> Iterator[Row]:
-    yield from left_photographs(data / "chessboard_opencv_left")
-    yield from portraits(data / "pose2sim_chessboard")
-    for camera in ("cam0", "cam3"):
-        yield from masked(data / "charuco_4x5_masked", camera)
-    yield from circle_photographs(data / "acircles_photos")
-
-
-def folder_search(folder: Path, pattern: str, board: Board) -> tuple[Searched, tuple[int, int]] | None:
-    read: list[Picture | NotFound] = [
-        decoded(file.name, file.read_bytes()) for file in sorted(folder.glob(pattern))
-    ]
-    sizes = {each.size for each in read if isinstance(each, Picture)}
-    return (search(read, board), sizes.pop()) if len(sizes) == 1 else None
-
-
-def left_photographs(folder: Path) -> Iterator[Row]:
-    found = folder_search(folder, "*.jpg", BOARDS[0])
-    if found is None:
-        return
-    solution = solve_lens(found[0].views, found[1])
-    count, focal = len(found[0].views), solution.parameters["fx"]
-    yield Row("left*.jpg: found", f"{count} of 13", "13 of 13", count == 13)
-    yield Row("left*.jpg: RMS", f"{solution.rms:.3f} px", "≤ 0.20 px", solution.rms <= 0.20)
-    yield Row(
-        "left*.jpg: fx", f"{focal:.2f} ± {solution.sigma['fx']:.2f}", "532.8 ± 1", abs(focal - 532.8) <= 1
-    )
-    yield verdict_row("left*.jpg", solution, "-", None)
-
-
-def portraits(folder: Path) -> Iterator[Row]:
-    found = folder_search(folder, "cam04*.jpg", Board(BoardKind.CHESSBOARD, 4, 7, 0.06))
-    if found is None:
-        return
-    views, size = found[0].views, found[1]
-    solution = solve_lens(views, size)
-    worst = worst_view(solution).name
-    rest = solve_lens([view for view in views if view.name != worst], size)
-    yield Row("pose2sim cam04: found", f"{len(views)} of 7", "6 of 7", len(views) == 6)
-    yield Row("pose2sim cam04: RMS", f"{solution.rms:.3f} px", "≤ 0.93 px", solution.rms <= 0.93)
-    yield Row(f"pose2sim cam04 without {worst}", f"{rest.rms:.3f} px", "≤ 0.22 px", rest.rms <= 0.22)
-
-
-def masked(folder: Path, camera: str) -> Iterator[Row]:
-    board = Board(BoardKind.CHARUCO, 4, 5, 0.054, 0.75, "DICT_4X4_1000", inverted=True)
-    found = folder_search(folder, f"{camera}*.png", board)
-    if found is None:
-        return
-    solution = solve_lens(found[0].views, found[1])
-    name, rms = f"ChArUco {camera}", solution.rms
-    if camera == "cam0":
-        yield Row(f"{name}: RMS", f"{rms:.3f} px", "≤ 0.20 px", rms <= 0.20)
-        yield verdict_row(name, solution, "-", None)
-    else:
-        yield verdict_row(name, solution, "flagged", judge(solution).word is not Word.GOOD)
-
-
-def circle_photographs(folder: Path) -> Iterator[Row]:
-    found = folder_search(folder, "*.png", Board(BoardKind.ACIRCLES, 4, 11, 0.03))
-    if found is None:
-        return
-    solution = solve_lens(found[0].views, found[1])
-    yield Row("circle photographs: RMS", f"{solution.rms:.3f} px", "-", None)
-    met = judge(solution).word is Word.DO_NOT_USE
-    yield verdict_row("circle photographs", solution, Word.DO_NOT_USE.value, met)
-
-
-def verdict_row(name: str, solution: LensSolution, bar: str, met: bool | None) -> Row:
-    return Row(f"{name}: verdict", judge(solution).word.value, bar, met)
 
 
 def main() -> None:

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.calibration_lens import BOARDS, folder_search, real
+from benchmarks.calibration_lens import BOARDS
+from benchmarks.calibration_photographs import folder_search, real
 from gtm_hit.calibration.boards import Board, BoardKind
 from gtm_hit.calibration.intrinsics import solve_lens
 from gtm_hit.calibration.verdict import Word, judge

@@ -11,13 +11,12 @@ from gtm_hit.calibration.adjustment.errors import AdjustmentError
 from gtm_hit.calibration.adjustment.parameters import packed
 from gtm_hit.calibration.adjustment.problem import PARAMETERS, Problem, Sightings, View
 from gtm_hit.calibration.adjustment.residuals import Seen, depths
-from gtm_hit.calibration.adjustment.settling import meeting, rays
+from gtm_hit.calibration.adjustment.settling import NARROW, meeting, rays, widest_angles
 from gtm_hit.geometry.camera import CalibrationError
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-NARROW = 1.0  # degrees: rays that differ by less tell hardly how far a point is away
 OUTSIDE = 1.0  # pictures: a click farther off the picture than this is none
 NAMED = 8  # points listed in a sentence
 
@@ -91,18 +90,6 @@ def doubts(
     if behind.any():
         sentences.append(_told(behind, "clicked in a view whose camera has them behind it", labels))
     return tuple(sentences)
-
-
-def widest_angles(rows: Floats, seen: Seen, count: int) -> Floats:
-    """(P,) degrees between the two rays of each point that differ most; 0 where it has fewer than two."""
-    directions, _ = rays(rows, seen)
-    by_view = np.full((len(rows), count, 3), np.nan)
-    by_view[seen.cameras, seen.points] = directions
-    least = np.ones(count)
-    for number in range(1, len(rows)):
-        cosines = (by_view[number] * by_view[:number]).sum(axis=2)
-        least = np.fmin(least, np.fmin.reduce(cosines, axis=0))
-    return np.degrees(np.arccos(np.clip(least, -1, 1)))
 
 
 def shared_points(seen: Seen, views: int, free: int) -> NDArray[np.int64]:

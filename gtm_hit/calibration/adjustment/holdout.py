@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gtm_hit.calibration.adjustment.parameters import packed
 from gtm_hit.calibration.adjustment.problem import View
 from gtm_hit.calibration.adjustment.residuals import Seen, misses
-from gtm_hit.calibration.adjustment.settling import settled
+from gtm_hit.calibration.adjustment.settling import NARROW, settled, widest_angles
 
 Floats = NDArray[np.float64]
 
@@ -23,15 +23,19 @@ FEWEST_VIEWS = 3
 class HoldOut:
     """Pixels between the foretold and the clicked place, one for each view left out."""
 
-    points: int
+    points: int  # that could be asked about
     misses: Floats  # (L,)
+    undetermined: int = 0  # left out of a view, the others' rays being almost parallel: not in `misses`
 
     def share(self, percent: float) -> float | None:
         return float(np.percentile(self.misses, percent)) if self.misses.size else None
 
 
 def leave_one_view_out(views: Sequence[View], seen: Seen, free: int, turn: float) -> HoldOut:
-    """Of free points, the first `free` ones, that three views saw; the cameras stay as they are."""
+    """Of free points, the first `free` ones, that three views saw; the cameras stay as they are.
+
+    Each is put where the other views' clicks, none of which may spoil it alone, say that it is.
+    """
     counts = np.bincount(seen.points, minlength=free)[:free]
     asked = np.flatnonzero(counts >= FEWEST_VIEWS)
     if asked.size > MOST_POINTS:
@@ -43,11 +47,13 @@ def leave_one_view_out(views: Sequence[View], seen: Seen, free: int, turn: float
     told, place = _others(seen, left)
     others = _sorted(Seen(seen.cameras[told], place, seen.pixels[told], np.ones(told.size)))
     rows = packed(views)
+    sure = widest_angles(rows, others, left.size) >= NARROW
     nowhere = np.full((left.size, 3), np.nan)
-    found = settled(rows, nowhere, others, np.ones(left.size, dtype=bool), turn)
+    found = settled(rows, nowhere, others, sure, turn)
     asked_of = _sorted(Seen(seen.cameras[left], np.arange(left.size), seen.pixels[left], np.ones(left.size)))
-    missed = misses(rows, found, asked_of)
-    return HoldOut(asked.size, np.hypot(missed[:, 0], missed[:, 1]))
+    missed = misses(rows, found, asked_of)[sure[asked_of.points]]
+    lengths = np.hypot(missed[:, 0], missed[:, 1])
+    return HoldOut(np.unique(seen.points[left][sure]).size, lengths, int((~sure).sum()))
 
 
 def _others(seen: Seen, left: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -17,6 +17,7 @@ Flags = NDArray[np.bool_]
 
 STEPS = 10
 PARALLEL = 1e-9  # below this determinant of their sum, rays do not meet
+NARROW = 1.0  # degrees: rays that differ by less tell hardly how far a point is away
 FARTHEST = 1e6  # metres from the origin that rays may meet
 
 
@@ -70,6 +71,18 @@ def meeting(directions: Floats, centres: Floats, seen: Seen, count: int) -> tupl
     found[met] = np.linalg.solve(total[met], towards[met][..., None])[..., 0]
     met &= (np.abs(found) < FARTHEST).all(axis=1)
     return found, met
+
+
+def widest_angles(rows: Floats, seen: Seen, count: int) -> Floats:
+    """(P,) degrees between the two rays of each point that differ most; 0 where it has fewer than two."""
+    directions, _ = rays(rows, seen)
+    by_view = np.full((len(rows), count, 3), np.nan)
+    by_view[seen.cameras, seen.points] = directions
+    least = np.ones(count)
+    for number in range(1, len(rows)):
+        cosines = (by_view[number] * by_view[:number]).sum(axis=2)
+        least = np.fmin(least, np.fmin.reduce(cosines, axis=0))
+    return np.degrees(np.arccos(np.clip(least, -1, 1)))
 
 
 def _choices(seen: Seen, views: int) -> list[Flags]:

@@ -34,6 +34,7 @@ def content(result: Adjustment, report: Report) -> dict[str, Any]:
             "median_px": hold_out.share(50),
             "p75_px": hold_out.share(75),
             "p90_px": hold_out.share(90),
+            "undetermined": hold_out.undetermined,
         },
         "feet": report.feet and asdict(report.feet),
         "cameras": [_camera(camera) for camera in report.cameras],
