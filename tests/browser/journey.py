@@ -16,6 +16,8 @@ from playwright.sync_api import Locator, Page, expect
 from gtm_hit.geometry.camera import Camera
 from tests.browser import journey_scene as scene
 from tests.browser.journey_scene import Belongings
+from tests.browser.test_desk_check import CLOSER
+from tests.browser.test_desk_check import TO_CLIENT as TO_PANE
 from tests.browser.test_desk_ground import TO_CLIENT
 
 SIGMA = 0.5  # pixels of the picture by which a click misses the mark, each way
@@ -23,6 +25,7 @@ SHARP = 0.75  # pixels between mark and ghost that an eye sees under the magnifi
 SIZES = ((1280, 800), (1920, 1080))
 SHOTS = os.environ.get("JOURNEY_SHOTS", "")  # a folder for pictures of every step
 FIRST = 4
+MOST_VIEWS = 3  # in which the same thing is clicked
 
 
 @dataclass
@@ -59,9 +62,12 @@ class Hand:
     def point_at(self, pixel: tuple[float, float]) -> None:
         """A click at a pixel of the picture, as near as a hand gets and a mouse can tell."""
         self.touches += 1
-        aim = np.array(pixel) + self._rng.normal(0, SIGMA, 2)
-        x, y = self.page.evaluate(TO_CLIENT, aim.tolist())
+        x, y = self.page.evaluate(TO_CLIENT, self.missing(pixel))
         self.page.mouse.click(round(x), round(y))
+
+    def missing(self, pixel: tuple[float, float]) -> list[float]:
+        """Where a hand that wants it clicks."""
+        return (np.array(pixel) + self._rng.normal(0, SIGMA, 2)).tolist()
 
     @contextmanager
     def step(self, name: str) -> Iterator[None]:
@@ -116,7 +122,7 @@ def find_lens(hand: Hand, camera: Camera, files: Belongings) -> None:
 
 def click_ground(hand: Hand, camera: Camera) -> None:
     """Four marks by the mouse, far apart; the others where they are expected, unless that looks wrong."""
-    page, places = hand.page, scene.seen(camera)
+    page, places = hand.page, scene.seen(camera, scene.marks())
     for count, name in enumerate(_spread(places), start=1):
         hand.click(page.locator(f"tr[data-point={name}]"))
         hand.point_at(places[name])
@@ -193,6 +199,48 @@ def bring_picture(hand: Hand, camera: Camera, files: Belongings) -> None:
         hand.shoot("07-ground-picture")
 
 
+def check_and_keep(hand: Hand) -> None:
+    """Things that nobody measured, each in three views, kept to be adjusted with."""
+    page = hand.page
+    hand.click(page.get_by_role("link", name="Check", exact=True))
+    expect(page.locator(".pane")).to_have_count(len(scene.cameras()))
+    places = {camera.name: scene.seen(camera, scene.tops()) for camera in scene.cameras()}
+    for number, thing in enumerate(scene.tops(), start=1):
+        views = [name for name, seen in places.items() if thing in seen]
+        for name in views[:MOST_VIEWS]:
+            _click_closely(hand, name, places[name][thing])
+        if number == 1:
+            hand.shoot("09a-check")
+        hand.press("k")
+        expect(page.locator("tr[data-point]")).to_have_count(number)
+        saved(page)
+        hand.press("f")
+    hand.shoot("09b-check-kept")
+
+
+def _click_closely(hand: Hand, camera: str, pixel: tuple[float, float]) -> None:
+    """A turn of the wheel first, as the picture is small."""
+    page, pane = hand.page, hand.page.locator(f".pane[data-camera={camera}]")
+    aim = [camera, *pixel]
+    page.mouse.move(*page.evaluate(TO_PANE, aim))
+    page.mouse.wheel(0, -1000)
+    page.wait_for_function(CLOSER, arg=[camera, scene.WIDTH / 2])
+    hand.touches += 2  # the wheel and the click
+    x, y = page.evaluate(TO_PANE, [camera, *hand.missing(pixel)])
+    page.mouse.click(round(x), round(y))
+    expect(pane.locator(".seen-click")).to_be_attached()
+
+
+def adjust(hand: Hand) -> None:
+    page = hand.page
+    hand.click(page.get_by_role("link", name="Adjust", exact=True))
+    hand.click(page.get_by_role("button", name="Adjust", exact=True))
+    expect(page.get_by_role("heading", name="Result 1")).to_be_visible(timeout=60_000)
+    hand.shoot("09c-adjusted")
+    hand.click(page.get_by_role("button", name="Use this result"))
+    expect(page.get_by_text("The cameras stand by result 1")).to_be_visible()
+
+
 def import_dataset(hand: Hand, files: Belongings) -> None:
     page = hand.page
     hand.click(page.get_by_role("link", name="Overview"))
@@ -205,5 +253,7 @@ def import_dataset(hand: Hand, files: Belongings) -> None:
     hand.choose("preset", "wildtrack")
     hand.shoot("12-import")
     hand.click(page.get_by_role("button", name="Import"))
-    expect(page.locator("[data-job-state], .state").first).to_have_text("done", timeout=60_000)
+    state = page.locator("[data-job-state], .state").first
+    expect(state).to_have_text(re.compile("^(done|failed)$"), timeout=60_000)
+    assert state.inner_text() == "done", page.locator("main").inner_text()
     hand.shoot("13-imported")

@@ -17,7 +17,7 @@ from gtm_hit.demo.arrays import Bytes
 from gtm_hit.demo.boards import board_picture, placements
 from gtm_hit.demo.film import quick_painter, smaller, walks_for
 from gtm_hit.demo.scene import read_scene
-from gtm_hit.geometry.camera import Camera, project
+from gtm_hit.geometry.camera import Camera, fold, project
 from tests.browser.street import cameras as street_cameras
 
 WIDTH = 960  # pixels of a picture; a click is as coarse in them as it would be in larger ones
@@ -27,6 +27,8 @@ FRAMES = 2
 DISTORTION = np.array([-0.22, 0.09, 0.0006, -0.0004, -0.015])
 COLUMNS, ROWS, SPACING, ORIGIN = 5, 9, (2.4, 4.0), (-2.0, -7.0)  # of the measured marks, metres
 MARK, LINE = 0.14, 0.025  # a painted cross: half its length and its width, metres
+# Tops of sticks that stand on the plaza, metres; nobody measured them.
+STICKS = ((-1, -3, 1.6), (2, 2, 2.2), (6, -1, 1.2), (0, 9, 2.4), (5, 6, 1.8), (7, 12, 2.0), (3, 16, 1.5))
 RIM = 6  # pixels: nobody clicks nearer to the edge of a picture
 
 
@@ -61,16 +63,27 @@ def marks() -> dict[str, NDArray[np.float64]]:
     }
 
 
-def seen(camera: Camera) -> dict[str, tuple[float, float]]:
-    """The pixels at which an eye finds the marks in the camera's picture."""
-    there = marks()
-    pixels = project(camera, np.array(list(there.values())))
+def tops() -> dict[str, NDArray[np.float64]]:
+    """Where the sticks end: metres, by name."""
+    return {f"stick{number}": np.array(top, dtype=float) for number, top in enumerate(STICKS, start=1)}
+
+
+def seen(camera: Camera, there: dict[str, NDArray[np.float64]]) -> dict[str, tuple[float, float]]:
+    """The pixels at which an eye finds them in the camera's picture."""
+    pixels = _shown(camera, np.array(list(there.values())))
     low, high = np.array([RIM, RIM]), np.array([camera.width - RIM, camera.height - RIM])
     return {
         name: (float(x), float(y))
         for name, (x, y) in zip(there, pixels, strict=True)
         if np.isfinite((x, y)).all() and (low <= (x, y)).all() and ((x, y) <= high).all()
     }
+
+
+def _shown(camera: Camera, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Pixels; NaN for what is behind the camera or farther off its axis than its lens shows."""
+    x, y, z = (points @ camera.rotation.T + camera.tvec).T
+    shown = (z > 0) & (np.hypot(x, y) < fold(camera) * z)
+    return np.where(shown[:, None], project(camera, points), np.nan)
 
 
 def make(folder: Path) -> Belongings:
@@ -84,7 +97,8 @@ def make(folder: Path) -> Belongings:
             videos[camera.name] = _board_video(folder / f"board-{camera.name}.avi", camera)
             nobody = replace(walks, xy=np.full_like(walks.xy, 1e4))
             grounds[camera.name] = folder / f"ground-{camera.name}.png"
-            cv2.imwrite(str(grounds[camera.name]), _with_marks(paint(nobody, 0), camera))
+            empty = _with_sticks(_with_marks(paint(nobody, 0), camera), camera)
+            cv2.imwrite(str(grounds[camera.name]), empty)
             for number in range(FRAMES):
                 picture = cv2.imencode(".jpg", paint(walks, number))[1].tobytes()
                 archive.writestr(f"Image_subsets/{camera.name}/{number:08d}.jpg", picture)
@@ -113,12 +127,23 @@ def _with_marks(picture: Bytes, camera: Camera) -> Bytes:
     still = np.zeros_like(along)
     for place in marks().values():
         for arm in ((along, still, still), (still, along, still)):
-            pixels = project(camera, place + np.column_stack(arm))
-            if np.isfinite(pixels).all() and np.abs(pixels).max() < 4 * camera.width:
+            pixels = _shown(camera, place + np.column_stack(arm))
+            if np.isfinite(pixels).all():
                 depth = float((camera.rotation @ place + camera.tvec)[2])
                 width = max(round(LINE * camera.matrix[0, 0] / depth), 1)
                 points = np.round(pixels * 16).astype(np.int32)
                 cv2.polylines(picture, [points], False, (245, 245, 245), width, cv2.LINE_AA, 4)
+    return picture
+
+
+def _with_sticks(picture: Bytes, camera: Camera) -> Bytes:
+    for top in tops().values():
+        along = np.linspace(0, 1, 17)[:, None] * (0, 0, top[2])
+        pixels = _shown(camera, top * (1, 1, 0) + along)
+        if np.isfinite(pixels).all():
+            points = np.round(pixels * 16).astype(np.int32)
+            cv2.polylines(picture, [points], False, (40, 40, 40), 2, cv2.LINE_AA, 4)
+            cv2.circle(picture, points[-1].tolist(), 2 * 16, (60, 200, 255), -1, cv2.LINE_AA, 4)
     return picture
 
 

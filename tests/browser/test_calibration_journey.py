@@ -65,6 +65,10 @@ def test_seven_cameras_become_a_dataset_whose_rectangles_are_right(
         for camera in scene.cameras():
             journey.bring_picture(who, camera, files)
             journey.click_ground(who, camera)
+    with who.step("check"):
+        journey.check_and_keep(who)
+    with who.step("adjust"):
+        journey.adjust(who)
     with who.step("import"):
         journey.import_dataset(who, files)
     share, worst = near_the_truth(site)

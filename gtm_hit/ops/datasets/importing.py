@@ -212,9 +212,11 @@ def _new_numbers(
         number for number in new if (number - first) % dataset.frame_step == 0 or number in layout.annotations
     ]
     if len(kept) < len(new):
+        left = len(new) - len(kept)
+        told = "1 frame lies" if left == 1 else f"{left} frames lie"
         notes.append(
-            f"{len(new) - len(kept)} frames lie between every {dataset.frame_step}th and were left out "
-            "(--keep-all-frames takes them)"
+            f"{told} between every {dataset.frame_step}th and "
+            f"{'was' if left == 1 else 'were'} left out (--keep-all-frames takes them)"
         )
     return kept
 

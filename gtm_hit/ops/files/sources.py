@@ -27,6 +27,7 @@ from django.utils import timezone
 
 from gtm_hit.formats.dataset_folder import natural_key
 from gtm_hit.formats.files import replacing
+from gtm_hit.formats.layout import IMAGE_FOLDERS
 from gtm_hit.formats.problems import FormatError, Problem, ProblemList
 from gtm_hit.models import Job
 from gtm_hit.ops.access.roles import Role, Somebody, may_everywhere
@@ -186,10 +187,15 @@ def unpack(path: Path, folder: Path, progress: Steps) -> None:
 
 
 def dataset_folder(folder: Path) -> Path:
-    """Where the dataset begins: archives often hold one folder that holds everything."""
+    """Where the dataset begins: archives often hold one folder that holds everything.
+
+    A folder of images that is alone, as beside a calibration that comes from a desk, is not that one.
+    """
     while True:
         entries = [path for path in folder.iterdir() if path.name[0] != "."]
         if len(entries) != 1 or not entries[0].is_dir() or entries[0].is_symlink():
+            return folder
+        if entries[0].name in IMAGE_FOLDERS:
             return folder
         folder = entries[0]
 

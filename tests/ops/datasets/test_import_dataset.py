@@ -200,7 +200,7 @@ def test_frames_between_the_steps_are_left_out_with_a_note(folder: Path) -> None
     add_images(folder, [3, 10])
     report = import_dataset(options(folder))
     assert list(Frame.objects.values_list("number", flat=True)) == [0, 5, 10]
-    assert report.notes == ["1 frames lie between every 5th and were left out (--keep-all-frames takes them)"]
+    assert report.notes == ["1 frame lies between every 5th and was left out (--keep-all-frames takes them)"]
 
 
 def test_all_frames_may_be_kept(folder: Path) -> None:

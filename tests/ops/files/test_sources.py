@@ -165,6 +165,12 @@ def test_the_dataset_may_lie_in_folders_of_the_archive(tmp_path: Path) -> None:
     assert sources.dataset_folder(tmp_path / "out") == inner
 
 
+def test_a_folder_of_images_alone_in_an_archive_is_not_taken_for_the_dataset(tmp_path: Path) -> None:
+    outer = tmp_path / "out" / "plaza"
+    (outer / "Image_subsets" / "C1").mkdir(parents=True)
+    assert sources.dataset_folder(tmp_path / "out") == outer
+
+
 # Sources
 
 
