@@ -70,11 +70,10 @@ def _of_csv(data: bytes, problems: ProblemList) -> Iterator[tuple[str, ThingClic
     for number, words in records(data):
         if words[: len(COLUMNS)] == COLUMNS:
             continue
-        thing, camera, *rest = [*words, ""][: len(COLUMNS) + 1]
-        use = rest[-1]
-        if len(words) not in {len(COLUMNS), len(COLUMNS) + 1} or not (thing and camera):
+        if len(words) not in {len(COLUMNS), len(COLUMNS) + 1} or not (words[0] and words[1]):
             problems.add(f"line {number}", f"is no line of the form {','.join(COLUMNS)}")
             continue
+        thing, camera, use = words[0], words[1], (words[len(COLUMNS) :] or [""])[0]
         if use not in {"", *USES}:
             problems.add(f"line {number}", f"use is {shown(use)} instead of {' or '.join(USES)}")
         x, y = real(words[2], "x", number, problems), real(words[3], "y", number, problems)
