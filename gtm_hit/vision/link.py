@@ -22,6 +22,7 @@ Ids = NDArray[np.int64]
 
 NOBODY = -1  # a row without a track, a place that nothing was found at
 FILLED = -1
+DEAR = 50.0  # more than any price that is taken
 SURE = 100.0  # outweighs any other price: what neighbours say is not to be argued with
 
 
@@ -38,8 +39,8 @@ class LinkSettings:
     sigma_unknown: float = 0.45  # metres, of a step whose velocity nobody knows
     wait: float = 0.5  # price of every frame that a step leaves out
     memory: int = 3  # steps that a velocity is measured over
-    fill: int = 1  # frames of a hole that are filled
-    passes: int = 2
+    fill: int = 2  # frames of a hole that are filled
+    passes: int = 4  # at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,11 +84,7 @@ def link(places: Places, settings: LinkSettings | None = None) -> Linked:
     """Join places into tracks; persons of neighbours keep their numbers, others get numbers above theirs."""
     settings = settings or LinkSettings()
     steps = _possible(places, settings)
-    following = _hungarian(places, settings)
-    prices = np.zeros(0)
-    for _ in range(settings.passes):
-        prices = _prices(places, steps, following, settings)
-        following = _flow(places, steps, prices, settings)
+    following, prices = _cheapest(places, steps, settings)
     following = _without_contradictions(places, following, steps, prices)
     tracks = _named(places, following)
     certainty = _certainty(steps, prices, following, len(places.frames))
@@ -219,6 +216,57 @@ def _flow(places: Places, steps: _Steps, prices: Floats, settings: LinkSettings)
     return following
 
 
+def _cheapest(places: Places, steps: _Steps, settings: LinkSettings) -> tuple[Ids, Floats]:
+    """The row that follows each, (N,), and what each step costs by the velocities that then are, (K,)."""
+    following = _hungarian(places, settings)
+    least, best, best_prices = np.inf, following, _prices(places, steps, following, settings)
+    prices = best_prices
+    for _ in range(settings.passes):
+        before = following
+        following = _adopted(places, _flow(places, steps, prices, settings), settings)
+        prices = _prices(places, steps, following, settings)
+        cost = _cost(steps, following, prices, settings)
+        if cost < least:
+            least, best, best_prices = cost, following, prices
+        if np.array_equal(before, following):
+            break
+    return best, best_prices
+
+
+def _cost(steps: _Steps, following: Ids, prices: Floats, settings: LinkSettings) -> float:
+    """Of all tracks together."""
+    taken = np.minimum(prices[following[steps.first] == steps.second], DEAR)
+    chains = [len(chain) for chain in _chains(following) if len(chain) > 1]
+    return float(taken.sum()) + settings.entry * len(chains) - settings.found * sum(chains)
+
+
+def _adopted(places: Places, following: Ids, settings: LinkSettings) -> Ids:
+    """With whoever belongs to no track, is known to nobody and stands where a track has a hole, nearest first.
+
+    A wrong step beside them may have made them too dear for the flow.
+    """
+    result = following.copy()
+    alone = (following == NOBODY) & (_reverse(following) == NOBODY) & (places.known() == NOBODY)
+    fitting: list[tuple[float, int, int]] = []
+    for before in np.flatnonzero(following != NOBODY).tolist():
+        after = int(following[before])
+        gap = int(places.frames[after] - places.frames[before])
+        for frame in range(1, gap):
+            there = places.xy[before] + (places.xy[after] - places.xy[before]) * frame / gap
+            rows = np.flatnonzero(alone & (places.frames == places.frames[before] + frame))
+            off = np.hypot(*(places.xy[rows] - there).T)
+            near = zip(off.tolist(), rows.tolist(), strict=True)
+            fitting += [(away, before, row) for away, row in near if away < 2 * settings.sigma]
+    for _away, before, row in sorted(fitting):
+        last = before
+        while places.frames[result[last]] < places.frames[row]:
+            last = int(result[last])
+        if alone[row] and places.frames[result[last]] > places.frames[row]:
+            result[row], result[last] = result[last], row
+            alone[row] = False
+    return result
+
+
 def _without_contradictions(places: Places, following: Ids, steps: _Steps, prices: Floats) -> Ids:
     """Cut tracks that two different known persons are on, at their dearest step between the two."""
     price = dict(zip(zip(steps.first.tolist(), steps.second.tolist(), strict=True), prices, strict=True))
@@ -229,7 +277,7 @@ def _without_contradictions(places: Places, following: Ids, steps: _Steps, price
             if known[row] == NOBODY:
                 continue
             if owner not in (NOBODY, known[row]):
-                cut = max(range(since, at), key=lambda i: price[track[i], track[i + 1]])
+                cut = max(range(since, at), key=lambda i: price.get((track[i], track[i + 1]), np.inf))
                 result[track[cut]] = NOBODY
             owner, since = int(known[row]), at
     return result

@@ -26,8 +26,11 @@ def linked_in_windows(frames: Ids, xy: Floats, settings: LinkSettings) -> Linked
         new = (part.rows != FILLED) & (part.frames >= fresh)
         tracks[rows[part.rows[new]]] = names[new]
         certainty[rows[part.rows[new]]] = part.certainty[new]
-        # A hole just before what is new: the window before could not see its other side.
+        # A hole just before what is new: the window before may not have seen its other side.
         holes = (part.rows == FILLED) & (part.frames >= fresh - settings.fill)
+        if filled:
+            before = set(zip(filled[-1].tracks.tolist(), filled[-1].frames.tolist(), strict=True))
+            holes &= [at not in before for at in zip(names.tolist(), part.frames.tolist(), strict=True)]
         filled.append(_taken(part, holes, names))
     found = np.flatnonzero(tracks != NOBODY)
     whole = Linked(found, frames[found], xy[found], tracks[found], certainty[found])

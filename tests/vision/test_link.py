@@ -50,8 +50,25 @@ def test_a_hole_of_one_frame_is_filled_on_the_straight_line() -> None:
     assert len(set(linked.tracks.tolist())) == 1
 
 
-def test_a_longer_hole_is_bridged_and_stays_a_hole() -> None:
+def test_two_frames_of_a_hole_are_filled() -> None:
     rows = [row for row in line(range(9), 1, 2, 0.4, 0) if row[0] not in {3, 4}]
+    linked = link(walkers(rows))
+    filled = linked.rows == FILLED
+    assert linked.frames[filled].tolist() == [3, 4]
+    np.testing.assert_allclose(linked.xy[filled], [[2.2, 2], [2.6, 2]], atol=1e-9)
+
+
+def test_two_who_change_direction_where_they_meet_keep_their_names() -> None:
+    """The first velocities pair them wrong, and then a track leaves out where they met; as in MultiviewX."""
+    one = [(0, 10.12, 12.32), (1, 9.68, 12.72), (2, 9.22, 13.12), (3, 8.78, 13.52), (4, 8.43, 13.92)]
+    other = [(0, 9.22, 12.18), (1, 9.82, 12.18), (2, 10.42, 12.18), (3, 11.02, 12.18), (4, 11.62, 12.18)]
+    linked = link(walkers(one, other))
+    assert len({track_of(linked, row) for row in range(5)}) == 1
+    assert len({track_of(linked, row) for row in range(5, 10)}) == 1
+
+
+def test_a_longer_hole_is_bridged_and_stays_a_hole() -> None:
+    rows = [row for row in line(range(9), 1, 2, 0.4, 0) if row[0] not in {3, 4, 5}]
     linked = link(walkers(rows))
     assert FILLED not in linked.rows
     assert len(set(linked.tracks.tolist())) == 1

@@ -32,6 +32,14 @@ def test_a_hole_at_the_border_of_windows_is_filled_once() -> None:
         assert len(set(linked.tracks.tolist())) == 1
 
 
+def test_two_frames_of_a_hole_at_the_border_are_filled_once() -> None:
+    count = WINDOW + 20
+    for hole in range(WINDOW - OVERLAP - 1, WINDOW + 2):
+        frames = np.delete(np.arange(count), [hole, hole + 1])
+        linked = linked_in_windows(frames, there_and_back(count)[frames], LinkSettings())
+        assert sorted(linked.frames[linked.rows == FILLED].tolist()) == [hole, hole + 1]
+
+
 def test_somebody_new_in_a_later_window_gets_a_number_of_their_own() -> None:
     late = np.arange(WINDOW + 5, WINDOW + 25)
     frames = np.concatenate((np.arange(WINDOW + 25), late))
