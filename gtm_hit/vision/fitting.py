@@ -24,7 +24,6 @@ class FitSettings:
     aside: float = 0.025  # how far a detector's box is off, as a share of its height: its middle,
     bottom: float = 0.030  # its feet
     top: float = 0.030  # and its head
-    seen: float = 0.020  # and how far the middle of its foreground is
     tolerance: float = 2.0  # from so many times that much on, an edge loses its say: hidden legs
     spread: float = 0.10  # metres, by which bodies of one kind differ in height
 
@@ -35,29 +34,21 @@ def fit(
     boxes: Mapping[str, Floats],
     cameras: Mapping[str, Camera],
     settings: FitSettings,
-    middles: Mapping[str, Floats] | None = None,
 ) -> tuple[Floats, Floats]:
     """Places and heights (N, 3), and how sure each place is: its covariance (N, 2, 2).
 
     start : (N, 3) x, y, height
     usual : (N,) the height each is expected to have
     boxes : per camera (N, 4), NaN where a body has none
-    middles : per camera (N, 2), where the background shows a body's middle, NaN where it does not, and how
-        far that may be off, as a share of the body's height
     """
     bodies = start.copy()
-    said = {name: _edges_said(found, cameras[name], settings) for name, found in boxes.items()}
-    for name, middle in (middles or {}).items():
-        said.setdefault(name, _nothing_said(len(start), settings))
-        edges, spread = said[name]
-        edges[:, 3] = middle[:, 0]
-        spread[:, 3] = np.hypot(settings.seen, np.nan_to_num(middle[:, 1]))
+    said = {name: _edges_said(found, cameras[name]) for name, found in boxes.items()}
     for _ in range(STEPS):
         normal, slope = _prior(bodies, usual, settings)
-        for name, (edges, spread) in said.items():
+        for name, edges in said.items():
             rows = np.flatnonzero(np.isfinite(edges).any(axis=1))
             if len(rows):
-                view = _View(cameras[name], edges[rows], spread[rows])
+                view = _View(cameras[name], edges[rows])
                 more_normal, more_slope = view.equations(bodies[rows], settings)
                 normal[rows] += more_normal
                 slope[rows] += more_slope
@@ -78,12 +69,10 @@ def _prior(bodies: Floats, usual: Floats, s: FitSettings) -> tuple[Floats, Float
 
 @dataclass(frozen=True, eq=False)
 class _View:
-    """What one camera says of some bodies, (N, 4) pixels: middle, bottom and top of the box, middle of the
-    foreground; NaN for nothing."""
+    """What one camera says of some bodies, (N, 3) pixels: middle, bottom and top of the box; NaN: nothing."""
 
     camera: Camera
     edges: Floats
-    spread: Floats  # as shares of the bodies' heights
 
     def equations(self, bodies: Floats, s: FitSettings) -> tuple[Floats, Floats]:
         """Normal matrices (N, 3, 3) and slopes (N, 3) for the bodies' x, y and height."""
@@ -93,7 +82,7 @@ class _View:
             moved = bodies.copy()
             moved[:, axis] += NUDGE
             slopes.append((_edges(moved, self.camera, s)[0] - seen) / NUDGE)
-        spread = self.spread * tall[:, None]
+        spread = np.array((s.aside, s.bottom, s.top)) * tall[:, None]
         off, turn = (self.edges - seen) / spread, np.stack(slopes, axis=-1) / spread[..., None]
         weight = np.where(np.isfinite(off), 1 / (1 + (off / s.tolerance) ** 2), 0.0)
         off, turn = np.nan_to_num(off), np.nan_to_num(turn)
@@ -101,22 +90,17 @@ class _View:
         return normal, np.einsum("nea,ne,ne->na", turn, off, weight)
 
 
-def _edges_said(found: Floats, camera: Camera, s: FitSettings) -> tuple[Floats, Floats]:
-    edges, spread = _nothing_said(len(found), s)
+def _edges_said(found: Floats, camera: Camera) -> Floats:
     said = np.column_stack(((found[:, 0] + found[:, 2]) / 2, found[:, 3], found[:, 1]))
-    edges[:, :3] = np.where(_tells(found, camera), said, np.nan)
-    return edges, spread
-
-
-def _nothing_said(count: int, s: FitSettings) -> tuple[Floats, Floats]:
-    return np.full((count, 4), np.nan), np.tile([s.aside, s.bottom, s.top, s.seen], (count, 1))
+    edges: Floats = np.where(_tells(found, camera), said, np.nan)
+    return edges
 
 
 def _edges(bodies: Floats, camera: Camera, s: FitSettings) -> tuple[Floats, Floats]:
-    """Middle, bottom, top and again middle of the boxes expected, (N, 4) pixels, and their heights (N,)."""
+    """Middle, bottom and top of the boxes expected, (N, 3) pixels, and their heights (N,)."""
     whole = body_boxes(camera, bodies[:, :2], s.radius, bodies[:, 2]).whole
     middle = (whole[:, 0] + whole[:, 2]) / 2
-    return np.column_stack((middle, whole[:, 3], whole[:, 1], middle)), whole[:, 3] - whole[:, 1]
+    return np.column_stack((middle, whole[:, 3], whole[:, 1])), whole[:, 3] - whole[:, 1]
 
 
 def _tells(found: Floats, camera: Camera) -> NDArray[np.bool_]:

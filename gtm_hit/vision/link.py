@@ -241,7 +241,7 @@ def _cost(steps: _Steps, following: Ids, prices: Floats, settings: LinkSettings)
 
 
 def _adopted(places: Places, following: Ids, settings: LinkSettings) -> Ids:
-    """With whoever belongs to no track, is known to nobody and stands where a track has a hole, nearest first.
+    """With whoever has no track and no name and stands where a track has a hole, nearest first.
 
     A wrong step beside them may have made them too dear for the flow.
     """

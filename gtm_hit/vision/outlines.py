@@ -54,22 +54,46 @@ MOST = 0.98  # how surely others explain what is seen
 FOUND = 10.0  # what a view must say for somebody, or it says nothing: who stands still is background
 
 
-def agreement(mask: Mask, camera: Camera, bodies: Floats, others: Floats) -> Floats:
-    """How much likelier the mask is with each of the bodies (N, 3) than without, beside the others (M, 3).
+class Shown:
+    """What the foreground of a view shows while some bodies (M, 3) are there."""
 
-    The sum of logarithms, (N,); all 0 where it shows none of them.
-    """
-    scale = mask.shape[1] / camera.width
-    at, seen = _cells(camera, bodies, scale)
-    window = _window(at[seen], mask)
-    if window is None:
-        return np.zeros(len(bodies))
-    left, top, right, bottom = window
-    explained = _explained(camera, others, scale, window)
-    at -= np.array((left, top), np.float32)
-    shown, theirs = _sampled(mask[top:bottom, left:right], at, -1.0), _sampled(explained, at, 0.0)
-    total = _likelier(shown, np.clip(theirs, 0, MOST)) * seen
-    return total if total.max() > FOUND else np.zeros(len(bodies))
+    def __init__(self, mask: Mask, camera: Camera, bodies: Floats) -> None:
+        self._mask, self._camera = mask, camera
+        self._scale = mask.shape[1] / camera.width
+        self._cells, self._seen = _cells(camera, bodies, self._scale)
+        self._low, self._high = self._cells.min(axis=(1, 2)), self._cells.max(axis=(1, 2))
+
+    def agreement(self, places: Floats, without: int | None = None) -> Floats:
+        """How much likelier the foreground is with somebody at each place (N, 3) than with nobody, beside the
+        bodies; `without` one of them, who is the one meant.
+
+        The sum of logarithms, (N,); all 0 where the view shows none of the places.
+        """
+        at, seen = _cells(self._camera, places, self._scale)
+        window = _window(at[seen], self._mask)
+        if window is None:
+            return np.zeros(len(places))
+        left, top, right, bottom = window
+        explained = self.explained(window, without)
+        at -= np.array((left, top), np.float32)
+        shown, theirs = _sampled(self._mask[top:bottom, left:right], at, -1.0), _sampled(explained, at, 0.0)
+        total = _likelier(shown, np.clip(theirs, 0, MOST)) * seen
+        return total if total.max() > FOUND else np.zeros(len(places))
+
+    def explained(self, window: tuple[int, int, int, int], without: int | None = None) -> NDArray[np.float32]:
+        """How surely each pixel of a window of the mask is one of the bodies."""
+        left, top, right, bottom = window
+        size = (right - left, bottom - top)
+        beside = (self._high < (left, top)).any(axis=1) | (self._low > (right, bottom)).any(axis=1)
+        rest = np.ones(size[::-1], np.float32)
+        for body in np.flatnonzero(self._seen & ~beside).tolist():
+            if body == without:
+                continue
+            cells = self._cells[body]
+            first, aside, down = cells[0, 0], cells[0, 1] - cells[0, 0], cells[1, 0] - cells[0, 0]
+            turn = np.column_stack((aside, down, first - (left, top))).astype(np.float64)
+            rest *= 1 - cv2.warpAffine(OUTLINE, turn, size, flags=cv2.INTER_LINEAR)
+        return np.asarray(1 - rest, dtype=np.float32)
 
 
 def _likelier(shown: NDArray, theirs: NDArray) -> Floats:
@@ -123,21 +147,3 @@ def _sampled(image: NDArray, at: Cells, beyond: float) -> NDArray:
         for start in range(0, len(flat), 30_000)  # no more rows than OpenCV can count
     ]
     return np.concatenate(parts).reshape(at.shape[:3])
-
-
-def _explained(
-    camera: Camera, others: Floats, scale: float, window: tuple[int, int, int, int]
-) -> NDArray[np.float32]:
-    """How surely each pixel of a window of the mask is one of the others."""
-    left, top, right, bottom = window
-    size = (right - left, bottom - top)
-    rest = np.ones(size[::-1], np.float32)
-    at, seen = _cells(camera, others, scale)
-    for cells in at[seen]:
-        low, high = cells.min(axis=(0, 1)), cells.max(axis=(0, 1))
-        if (high < (left, top)).any() or (low > (right, bottom)).any():
-            continue
-        first, aside, down = cells[0, 0], cells[0, 1] - cells[0, 0], cells[1, 0] - cells[0, 0]
-        turn = np.column_stack((aside, down, first - (left, top))).astype(np.float64)
-        rest *= 1 - cv2.warpAffine(OUTLINE, turn, size, flags=cv2.INTER_LINEAR)
-    return np.asarray(1 - rest, dtype=np.float32)

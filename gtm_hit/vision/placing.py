@@ -3,72 +3,63 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gtm_hit.geometry.camera import Camera, Floats
 from gtm_hit.geometry.grid import Grid
-from gtm_hit.vision.bodies import body_boxes
-from gtm_hit.vision.boxes import Box
-from gtm_hit.vision.cover import Body, CoverSettings
-from gtm_hit.vision.fitting import chosen_boxes, fit
-from gtm_hit.vision.silhouettes import SilhouetteSettings, silhouettes
+from gtm_hit.vision.cover import Body
+from gtm_hit.vision.masks import Masks
+from gtm_hit.vision.outlines import Shown
 
-ROUNDS = 2  # the foreground is looked at again from the better place
-FURTHEST = 0.25  # metres the background may move somebody
+
+@dataclass(frozen=True)
+class PlacingSettings:
+    reach: float = 0.15  # metres from where a body is to where it is looked for …
+    step: float = 0.05  # … at places so far apart
+    rounds: int = 2  # the others stand better by then
+    boxes: float = 0.5  # what the edges of the boxes count: views are off together
+    shown: float = 0.2  # and the logarithm of the foreground's likelihood: neighbouring pixels say the same
 
 
 def placed(
-    bodies: Sequence[Body],
-    boxes: Mapping[str, Sequence[Box]],
-    foregrounds: Mapping[str, NDArray],
-    cameras: Mapping[str, Camera],
-    settings: CoverSettings,
-    look: SilhouetteSettings,
+    bodies: Sequence[Body], foregrounds: Masks, cameras: Mapping[str, Camera], settings: PlacingSettings
 ) -> list[Body]:
-    """The bodies, each moved by not more than `FURTHEST`; with all the others explained."""
-    if not bodies:
-        return []
-    start = np.array([[*body.xy, body.height] for body in bodies])
-    usual = _usual(start[:, 2], settings)
-    found = chosen_boxes(boxes, [body.boxes for body in bodies])
-    now, spread = start, np.array([body.spread for body in bodies])
-    for _ in range(ROUNDS):
-        seen = {
-            name: _middles(now, cameras[name], mask, look, settings) for name, mask in foregrounds.items()
-        }
-        now, spread = fit(now, usual, found, cameras, settings.fit, seen)
-        now = _held(start, now)
-    return [
-        replace(body, xy=each[:2], height=float(each[2]), spread=wide)
-        for body, each, wide in zip(bodies, now, spread, strict=True)
-    ]
+    """The bodies, each moved to the middle of what is likely there with all the others explained."""
+    start: Floats = np.array([[*body.xy, body.height] for body in bodies]).reshape(-1, 3)
+    sure = [np.linalg.inv(body.spread) for body in bodies]
+    around = _disc(settings)
+    now = start
+    for _ in range(settings.rounds):
+        shown = [Shown(mask, cameras[name], now) for name, mask in foregrounds.items()]
+        then = now.copy()
+        for row, (body, first) in enumerate(zip(now, start, strict=True)):
+            places = body + around
+            off = (places - first)[:, :2]
+            seen = sum((view.agreement(places, without=row) for view in shown), np.zeros(len(places)))
+            if seen.any():
+                boxed = -0.5 * np.einsum("na,ab,nb->n", off, sure[row], off)
+                then[row] = _middle(places, settings.boxes * boxed + settings.shown * seen)
+        now = then
+    return [replace(body, xy=each[:2]) for body, each in zip(bodies, now, strict=True)]
 
 
-def _middles(
-    bodies: Floats, camera: Camera, mask: NDArray, look: SilhouetteSettings, settings: CoverSettings
-) -> Floats:
-    """Where the foreground shows the middle of each body, and how far that may be off, (N, 2)."""
-    expected = body_boxes(camera, bodies[:, :2], settings.sight.radius, bodies[:, 2])
-    found = silhouettes(mask, mask.shape[1] / camera.width, expected.whole, expected.share, look)
-    return np.column_stack((found.middle, found.spread))
+def _disc(settings: PlacingSettings) -> Floats:
+    """(N, 3) metres, to be added to a body."""
+    count = int(settings.reach / settings.step + 1e-6)
+    steps = settings.step * np.arange(-count, count + 1)
+    around = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    around = around[np.hypot(*around.T) <= settings.reach + 1e-9]
+    return np.column_stack((around, np.zeros(len(around))))
 
 
-def _usual(heights: Floats, settings: CoverSettings) -> Floats:
-    """The height of each body's kind."""
-    known = np.array([height for height, _ in settings.heights])
-    kinds: Floats = known[np.abs(heights[:, None] - known).argmin(axis=1)]
-    return kinds
-
-
-def _held(start: Floats, now: Floats) -> Floats:
-    away = now[:, :2] - start[:, :2]
-    far = np.maximum(np.hypot(away[:, 0], away[:, 1]), 1e-9)[:, None]
-    held = now.copy()
-    held[:, :2] = start[:, :2] + away * np.minimum(1.0, FURTHEST / far)
-    return held
+def _middle(places: Floats, likely: Floats) -> Floats:
+    """Of places (N, 3) with logarithms of what is likely, (N,)."""
+    weight = np.exp(likely - likely.max())
+    middle: Floats = weight @ places / weight.sum()
+    return middle
 
 
 def steps_of(grid: Grid, metres: float) -> NDArray[np.int64]:

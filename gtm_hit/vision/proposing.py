@@ -24,10 +24,9 @@ from gtm_hit.vision.disagreement import agreements, alarm, suspect
 from gtm_hit.vision.evidence import Foregrounds, evidence_for
 from gtm_hit.vision.located import Locator
 from gtm_hit.vision.people import CameraAlarm, FrameProposals, Proposal
-from gtm_hit.vision.placing import placed, steps_of
+from gtm_hit.vision.placing import PlacingSettings, placed, steps_of
 from gtm_hit.vision.pom import Frames, PomSettings, occupancy, peaks
 from gtm_hit.vision.projected import ProjectedSettings, projected
-from gtm_hit.vision.silhouettes import SilhouetteSettings
 
 Boxes = Mapping[str, Sequence[Box]]
 
@@ -49,7 +48,7 @@ class Settings:
     least: float = 0.5  # scores below are not proposed
     refine: bool = True  # by the background, where there is one
     cover: CoverSettings = field(default_factory=CoverSettings)
-    silhouettes: SilhouetteSettings = field(default_factory=SilhouetteSettings)
+    placing: PlacingSettings = field(default_factory=PlacingSettings)
     pom: PomSettings = field(default_factory=PomSettings)
     projected: ProjectedSettings = field(default_factory=ProjectedSettings)
 
@@ -117,13 +116,11 @@ class Proposer:
         if self.method is Method.COVER:
             bodies, suspicious = self._covered(boxes)
             wrong = {each.camera for each in suspicious}
-            boxes = {name: each for name, each in boxes.items() if name not in wrong}
             masks = {name: mask for name, mask in masks.items() if name not in wrong}
         else:
             bodies, suspicious = self._occupied(masks), ()
         if self.method is not Method.POM and self.settings.refine and masks:
-            settings = self.settings
-            bodies = placed(bodies, boxes, masks, self.scene.cameras, settings.cover, settings.silhouettes)
+            bodies = placed(bodies, masks, self.scene.cameras, self.settings.placing)
         return bodies, suspicious
 
     def _covered(self, boxes: Boxes) -> tuple[list[Body], tuple[CameraAlarm, ...]]:

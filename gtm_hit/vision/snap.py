@@ -16,12 +16,11 @@ import numpy as np
 
 from gtm_hit.geometry.camera import Camera, Floats
 from gtm_hit.vision.boxes import Box, as_array
-from gtm_hit.vision.cover import Body, CoverSettings, Match, matches_of
+from gtm_hit.vision.cover import CoverSettings, Match, matches_of
+from gtm_hit.vision.fitting import fit
 from gtm_hit.vision.masks import Masks
-from gtm_hit.vision.outlines import agreement
-from gtm_hit.vision.placing import placed
+from gtm_hit.vision.outlines import Shown
 from gtm_hit.vision.sights import Sight
-from gtm_hit.vision.silhouettes import SilhouetteSettings
 
 MARKED = 0.5  # metres between a proposal and a mark of the same person
 USUAL = CoverSettings().heights[0][0]  # metres: of whoever has no height of their own
@@ -43,7 +42,6 @@ class SnapSettings:
     gain: float = 0.05  # and so much more than the one marked
     apart: float = 0.35  # metres from everybody else
     cover: CoverSettings = field(default_factory=CoverSettings)
-    silhouettes: SilhouetteSettings = field(default_factory=SilhouetteSettings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +96,7 @@ def snap(
     found = _peak(places[free], worth[:-1][free], s)
     gain = float(worth[:-1][free].max() - worth[-1])
     if not shown.any():
-        found = _placed(marks, found, taken, scores, cameras, s)
+        found = _by_edges(marks, found, scores, cameras, s)
         gain = float(scores.of(found[None])[0] - worth[-1])
     if _apart(found[None], marks.others)[0] < s.apart:
         return _stays(marks, gain, Refused.NEAR)
@@ -137,7 +135,7 @@ def _peak(places: Floats, worth: Floats, s: SnapSettings) -> Floats:
 
 def _shown(foregrounds: Masks, cameras: Mapping[str, Camera], bodies: Floats, others: Floats) -> Floats:
     """What is not the background says about bodies (N, 3), all views together, (N,)."""
-    seen = (agreement(mask, cameras[name], bodies, others) for name, mask in foregrounds.items())
+    seen = (Shown(mask, cameras[name], others).agreement(bodies) for name, mask in foregrounds.items())
     return sum(seen, np.zeros(len(bodies)))
 
 
@@ -174,23 +172,15 @@ def _explained(name: str, sight: Sight, others: Floats, taken: Sequence[Match]) 
     return explained
 
 
-def _placed(
-    marks: Marks,
-    peak: Floats,
-    taken: Sequence[Match],
-    scores: _Scores,
-    cameras: Mapping[str, Camera],
-    s: SnapSettings,
+def _by_edges(
+    marks: Marks, peak: Floats, scores: _Scores, cameras: Mapping[str, Camera], s: SnapSettings
 ) -> Floats:
     """The body at the peak put where its boxes' edges say."""
-    mine = {name: box for name in scores.sights if (box := scores.box(name, peak)) is not None}
-    bodies = [Body(peak[:2], float(peak[2]), 0.0, mine, np.eye(2))]
-    bodies += [
-        Body(each[:2], float(each[2]), 0.0, match, np.eye(2))
-        for each, match in zip(marks.others, taken, strict=True)
-    ]
-    boxes = {name: [Box(*row) for row in sight.found.tolist()] for name, sight in scores.sights.items()}
-    found = placed(bodies, boxes, {}, cameras, s.cover, s.silhouettes)[0].xy
-    away = found - marks.one[:2]
+    rows = {}
+    for name, sight in scores.sights.items():
+        box = scores.box(name, peak)
+        rows[name] = np.full((1, 4), np.nan) if box is None else sight.found[box : box + 1, :4]
+    bodies, _spread = fit(peak[None], peak[2:], rows, cameras, s.cover.fit)
+    away = bodies[0, :2] - marks.one[:2]
     held = away * min(1.0, s.reach / max(float(np.hypot(*away)), 1e-9))
     return np.array([*(marks.one[:2] + held), marks.one[2]])
