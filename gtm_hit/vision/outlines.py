@@ -48,6 +48,9 @@ OUTLINE = np.hstack((np.array(_LEFT), np.array(_LEFT)[:, -2::-1])).astype(np.flo
 ROWS, COLUMNS = OUTLINE.shape
 ABOVE, BELOW = 0.10, 0.02  # of the body's height, that belong to the outline
 SIDE = 0.45  # metres to either side
+# Where the middle of each row is, from head to feet, and that of each column, metres.
+DOWN = np.asarray((np.arange(ROWS) + 0.5) / ROWS * (1 + ABOVE + BELOW) - ABOVE, dtype=np.float32)
+ASIDE = np.asarray((np.arange(COLUMNS) - (COLUMNS - 1) / 2) * 2 * SIDE / COLUMNS, dtype=np.float32)
 NEAREST = 0.5  # metres before the camera
 DOUBT = 0.08  # a pixel is at least so likely not what the mask says
 MOST = 0.98  # how surely others explain what is seen
@@ -61,7 +64,8 @@ class Shown:
         self._mask, self._camera = mask, camera
         self._scale = mask.shape[1] / camera.width
         self._cells, self._seen = _cells(camera, bodies, self._scale)
-        self._low, self._high = self._cells.min(axis=(1, 2)), self._cells.max(axis=(1, 2))
+        corners = _corners(self._cells)
+        self._low, self._high = corners.min(axis=1), corners.max(axis=1)
 
     def agreement(self, places: Floats, without: int | None = None) -> Floats:
         """How much likelier the foreground is with somebody at each place (N, 3) than with nobody, beside the
@@ -123,17 +127,25 @@ def _axes(camera: Camera, bodies: Floats) -> tuple[Floats, Floats, Floats, Flags
 
 def _cells(camera: Camera, bodies: Floats, scale: float) -> tuple[Cells, Flags]:
     head, foot, metre, seen = _axes(camera, bodies)
-    down = ((np.arange(ROWS) + 0.5) / ROWS * (1 + ABOVE + BELOW) - ABOVE)[None, :, None, None]
-    aside = ((np.arange(COLUMNS) - (COLUMNS - 1) / 2) * 2 * SIDE / COLUMNS)[None, None, :, None]
-    at = head[:, None, None] + (foot - head)[:, None, None] * down + metre[:, None, None] * aside
-    return ((np.where(seen[:, None, None, None], at, -1e4) + 0.5) * scale - 0.5).astype(np.float32), seen
+    top = ((np.where(seen[:, None], head, -1e4) + 0.5) * scale - 0.5).astype(np.float32)
+    tall = (np.where(seen[:, None], foot - head, 0.0) * scale).astype(np.float32)
+    wide = (np.where(seen[:, None], metre, 0.0) * scale).astype(np.float32)
+    at = top[:, None] + tall[:, None] * DOWN[:, None]
+    return at[:, :, None] + (wide[:, None] * ASIDE[:, None])[:, None], seen
+
+
+def _corners(at: Cells) -> NDArray[np.float32]:
+    """(N, 4, 2): cells lie on straight lines, so nothing is beyond."""
+    corners: NDArray[np.float32] = at[:, [0, 0, -1, -1], [0, -1, 0, -1]]
+    return corners
 
 
 def _window(at: Cells, mask: Mask) -> tuple[int, int, int, int] | None:
     """Left, top, right and bottom of the part of the mask that matters; None: all is beyond."""
     if not len(at):
         return None
-    low, high = at.min(axis=(0, 1, 2)), at.max(axis=(0, 1, 2))
+    corners = _corners(at).reshape(-1, 2)
+    low, high = corners.min(axis=0), corners.max(axis=0)
     left, top = (max(0, int(side)) for side in low)
     right, bottom = (min(int(side) + 2, most) for side, most in zip(high, mask.shape[::-1], strict=True))
     return (left, top, right, bottom) if left < right and top < bottom else None
