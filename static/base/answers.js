@@ -85,7 +85,9 @@
  * @typedef {{code: string, summary: Summary}} SubmitAnswer
  *
  * @typedef {{step: string, frame: number, annotations: Annotation[]}} CheckBody
- * @typedef {{ok: boolean, message: string}} Verdict
+ * @typedef {{ok: boolean, message: string, mistake: Mistake|null, person: number|null, feet: number|null}} Verdict
+ *   `person`: whom it is about, if they have a box; `feet`: the position at which they should stand
+ * @typedef {"frame"|"nothing"|"body"|"other"|"head"|"off"|"gone"|"empty"|"yellow"} Mistake
  * @typedef {{done_at: string}} TutorialDoneAnswer
  *
  * @typedef {{place: string, reason: string}} Problem with what was sent

@@ -80,11 +80,11 @@ def pane_of(page: Page, view: int) -> Locator:
     return page.locator(f'[data-view="camera-{view}"]')
 
 
-def place_on_page(page: Page, view: int, position: int) -> tuple[float, float]:
-    """Where a position's ground point is, in an unzoomed view."""
+def place_on_page(page: Page, view: int, position: int, height: float = 0.0) -> tuple[float, float]:
+    """Where a position's ground point is, or what is so many metres above it, in an unzoomed view."""
     x, y = GRID.metres([position])[0]
     camera = streets.cameras()[view]
-    u, v = project(camera, [[x, y, 0.0]])[0]
+    u, v = project(camera, [[x, y, height]])[0]
     bounds = pane_of(page, view).bounding_box()
     assert bounds is not None
     scale = min(bounds["width"] / camera.width, bounds["height"] / camera.height)

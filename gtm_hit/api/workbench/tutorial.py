@@ -24,6 +24,7 @@ from gtm_hit.api.workbench.places import TutorialPlace
 from gtm_hit.api.workbench.scene import SceneSerializer
 from gtm_hit.models import LayerFrame
 from gtm_hit.ops.tutorial import lesson
+from gtm_hit.ops.tutorial.judging import Mistake
 from gtm_hit.ops.tutorial.lesson import Step
 
 
@@ -41,6 +42,9 @@ class CheckSerializer(serializers.Serializer[Any]):
 class VerdictSerializer(serializers.Serializer[Any]):
     ok = serializers.BooleanField()
     message = serializers.CharField()
+    mistake = serializers.ChoiceField(list(Mistake), allow_null=True)
+    person = serializers.IntegerField(allow_null=True, help_text="whom it is about, if they have a box")
+    feet = serializers.IntegerField(allow_null=True, help_text="the position at which they should stand")
 
 
 class TutorialDoneSerializer(serializers.Serializer[Any]):
@@ -98,7 +102,7 @@ class TutorialCheck(TutorialPlace):
     def post(self, request: Request) -> Response:
         wanted = valid(CheckSerializer(data=request.data))
         verdict = lesson.check(self.worker, wanted["step"], wanted["frame"], wanted["annotations"])
-        return Response({"ok": verdict.ok, "message": verdict.message})
+        return Response(VerdictSerializer(verdict).data)
 
 
 class TutorialDone(TutorialPlace):

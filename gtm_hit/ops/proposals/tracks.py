@@ -30,7 +30,7 @@ class _Seen:
 
 
 def link_run(run: ProposalRun) -> int:
-    """Give everybody the run proposes a track, fill holes of one frame; the number of tracks."""
+    """Give everybody the run proposes a track, fill short holes; the number of tracks."""
     numbers = Frame.objects.filter(dataset=run.dataset_id).order_by("number").values_list("pk", flat=True)
     places = {pk: index for index, pk in enumerate(numbers)}
     looked = dict(ProposalFrame.objects.filter(run=run).values_list("frame_id", "pk"))

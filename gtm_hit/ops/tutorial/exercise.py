@@ -30,11 +30,13 @@ class NoRoom(OperationError, ValueError):
 
 @dataclass(frozen=True)
 class Exercise:
-    """Three frames: the first with three mistakes, the second with two people where they were before."""
+    """Three frames: the first shows three boxes and wants three mistakes mended, the second everybody, two of
+    them where they were before."""
 
     numbers: list[int]
     truth: list[Positions]
-    missing: int  # in the truth of the first frame, not shown
+    missing: int  # in the truth of the first frame, the one who is to be marked
+    right: int  # shown in the first frame where they stand
     shifted: int  # shown `SHIFT` metres off, carried over
     shifted_to: int
     invented: int  # shown where nobody is
@@ -42,10 +44,10 @@ class Exercise:
     carried: list[int]  # shown in the second frame where they were in the first
 
     def shown(self, index: int) -> Positions:
-        people = dict(self.truth[index])
         if index == 0:
-            del people[self.missing]
-            people |= {self.shifted: self.shifted_to, self.invented: self.invented_at}
+            right = self.truth[0][self.right]
+            return {self.right: right, self.shifted: self.shifted_to, self.invented: self.invented_at}
+        people = dict(self.truth[index])
         if index == 1:
             people |= {person: self.truth[0][person] for person in self.carried}
         return people
@@ -67,11 +69,12 @@ def make_exercise(numbers: list[int], truth: list[Positions], grid: Grid, views:
     if not has_people(truth):
         raise NoRoom("the tutorial needs three frames and three people")
     first, second = truth[0], truth[1]
-    missing, shifted = clearest(first, grid, views)[:2]
+    missing, shifted, right = clearest(first, grid, views)[:3]
     draft = Exercise(
         numbers=numbers,
         truth=truth,
         missing=missing,
+        right=right,
         shifted=shifted,
         shifted_to=beside(shifted, first, grid),
         invented=unused_number(truth),

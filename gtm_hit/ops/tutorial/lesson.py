@@ -9,7 +9,6 @@ import numpy as np
 from django.conf import settings
 from django.db import transaction
 from django.utils import timezone
-from django.utils.translation import gettext as _
 from numpy.typing import NDArray
 
 from gtm_hit.geometry.cylinder import rectangles
@@ -22,13 +21,19 @@ from gtm_hit.ops.tutorial.exercise import (
     Exercise,
     NoRoom,
     Positions,
-    between,
     has_people,
     make_exercise,
 )
+from gtm_hit.ops.tutorial.judging import (
+    Verdict,
+    frame_missed,
+    judge_correct,
+    judge_next,
+    judge_place,
+    judge_remove,
+)
 
 FRAMES = 3
-NEAR_ENOUGH = 0.15 + 1e-6  # metres; six grid steps of 2.5 cm are not quite 0.15
 LARGE = 8  # a person of an eighth of the image's height can be judged without zooming
 
 
@@ -47,12 +52,6 @@ class StepsMissing(OperationError):
     def __init__(self, steps: list[str]) -> None:
         super().__init__(", ".join(steps))
         self.steps = steps
-
-
-@dataclass(frozen=True)
-class Verdict:
-    ok: bool
-    message: str
 
 
 @dataclass(frozen=True)
@@ -159,7 +158,7 @@ def remember(worker: Worker, step: Step) -> None:
 def judge(tutorial: Tutorial, step: Step, number: int, rows: list[Row]) -> Verdict:
     index = 1 if step is Step.NEXT else 0
     if number != tutorial.frames[index].number:
-        return Verdict(False, _("This step is about frame %(place)d of 3.") % {"place": index + 1})
+        return frame_missed(index)
     judges = {
         Step.PLACE: judge_place,
         Step.CORRECT: judge_correct,
@@ -167,60 +166,6 @@ def judge(tutorial: Tutorial, step: Step, number: int, rows: list[Row]) -> Verdi
         Step.NEXT: judge_next,
     }
     return judges[step](tutorial.exercise, tutorial.dataset, {row.person: row for row in rows})
-
-
-def judge_place(exercise: Exercise, dataset: Dataset, rows: dict[int, Row]) -> Verdict:
-    feet = exercise.truth[0][exercise.missing]
-    added = [row.position for person, row in rows.items() if person not in exercise.shown(0)]
-    if not added:
-        return Verdict(False, _("Nobody new yet. Click the feet of the person who has no box."))
-    off = float(between(added, [feet], dataset.grid).min())
-    if off > NEAR_ENOUGH:
-        return Verdict(False, too_far(off))
-    return Verdict(True, _("Right: the box fits in every view."))
-
-
-def judge_correct(exercise: Exercise, dataset: Dataset, rows: dict[int, Row]) -> Verdict:
-    return judge_person(exercise.shifted, exercise.truth[0], dataset, rows) or Verdict(
-        True, _("Right: that box fits the person now.")
-    )
-
-
-def judge_remove(exercise: Exercise, dataset: Dataset, rows: dict[int, Row]) -> Verdict:
-    if exercise.invented in rows:
-        return Verdict(False, _("The box with nobody in it is still there."))
-    kept = exercise.shown(0).keys() - {exercise.invented}
-    if gone := sorted(kept - rows.keys()):
-        reason = _("Person %(person)d was a right one; “Undo” brings them back.")
-        return Verdict(False, reason % {"person": gone[0]})
-    return Verdict(True, _("Right: nobody stood there."))
-
-
-def judge_next(exercise: Exercise, dataset: Dataset, rows: dict[int, Row]) -> Verdict:
-    for person in exercise.carried:
-        if wrong := judge_person(person, exercise.truth[1], dataset, rows):
-            return wrong
-    return Verdict(True, _("Right: everybody stands where the pictures show them."))
-
-
-def judge_person(person: int, truth: Positions, dataset: Dataset, rows: dict[int, Row]) -> Verdict | None:
-    """What is wrong with one person; None when nothing is."""
-    row = rows.get(person)
-    if row is None:
-        return Verdict(False, _("Person %(person)d is gone; “Undo” brings them back.") % {"person": person})
-    off = float(between([row.position], [truth[person]], dataset.grid)[0, 0])
-    if off > NEAR_ENOUGH:
-        return Verdict(False, too_far(off))
-    if row.state == Annotation.State.CARRIED:
-        reason = _("Person %(person)d is still yellow; validate with e.")
-        return Verdict(False, reason % {"person": person})
-    return None
-
-
-def too_far(metres: float) -> str:
-    return _("Still %(centimetres)d cm from the feet. Move it with the arrow keys.") % {
-        "centimetres": round(metres * 100)
-    }
 
 
 def finish(worker: Worker) -> Worker:

@@ -1,10 +1,21 @@
 import { element, setText } from "../../base/dom.js";
 import { failureWords } from "../../base/failure_words.js";
 import { gettext } from "../../base/messages.js";
+import { annotation } from "../../truth/annotation.js";
 import { Spotlight } from "../../views/spotlight.js";
+import { keyFor } from "../keys/keys.js";
+import { adviceFor, presses } from "./advice.js";
 import { tutorialSteps, whatMatters } from "./tutorial_steps.js";
 
+/**
+ * @typedef {import("../../base/answers.js").Verdict} Verdict
+ * @typedef {import("../../views/pane.js").Pane} Pane
+ */
+
 const SETTLED = 600; // ms without an edit before the server is asked
+const ENOUGH = 3; // misses after which the place is shown
+const UNDONE = 20; // steps at most that a wrong first click is taken back by
+const QUIET = new Set(["nothing", "frame"]); // not done yet is no mistake
 
 /**
  * One step at a time: what to do, whether it was done well, and what is next. One can go back to a step, and
@@ -15,17 +26,21 @@ export class Tutorial {
    * @param {object} parts
    * @param {import("../../base/api.js").Api} parts.api
    * @param {import("../../truth/store.js").Store} parts.store
+   * @param {import("../../truth/history.js").History} parts.history
    * @param {import("../../views/panes.js").Panes} parts.panes
    * @param {import("../frames/navigation.js").Navigation} parts.navigation
    * @param {string} parts.home
    */
-  constructor({ api, store, panes, navigation, home }) {
+  constructor({ api, store, history, panes, navigation, home }) {
     this._api = api;
     this._store = store;
+    this._history = history;
+    this._panes = panes;
     this._navigation = navigation;
     this._home = home;
     this._spotlight = new Spotlight(panes);
     this._index = 0;
+    this._misses = 0; // in this step
     /** @type {ReturnType<typeof setTimeout>|undefined} */
     this._timer = undefined;
     this._asked = 0;
@@ -49,11 +64,15 @@ export class Tutorial {
       { type: "button", className: "quiet", onclick: () => window.location.reload() },
       gettext("Start over"),
     );
-    this._check = element("button", { type: "button", onclick: () => this._ask(true) }, gettext("Check"));
+    this._check = element(
+      "button",
+      { type: "button", onclick: () => this._ask({ loud: true, all: true }) },
+      gettext("Check"),
+    );
     this._go = element("button", { type: "button", className: "main", hidden: true, onclick: () => this._advance() });
     this.element = this._build();
-    store.on("change", ({ source }) => source === "edit" && this._soon());
-    store.on("frame", () => this._soon());
+    store.on("change", ({ source }) => source === "edit" && this._soon(true));
+    store.on("frame", () => this._soon(false));
   }
 
   /** Asked for anew each time: the keys named in them can be changed. */
@@ -64,6 +83,7 @@ export class Tutorial {
   /** Once the page is there. */
   start() {
     this._show();
+    this._ask({});
   }
 
   _build() {
@@ -71,10 +91,7 @@ export class Tutorial {
       "section",
       { className: "tutorial", "aria-label": gettext("Tutorial"), onkeydown: keepForButtons },
       element("div", { className: "tutorial-head" }, this._progress, this._back, this._again),
-      this._title,
-      this._text,
-      this._matters,
-      this._hint,
+      element("div", { className: "tutorial-text" }, this._title, this._text, this._matters, this._hint),
       this._verdict,
       element("div", { className: "tutorial-buttons" }, this._check, this._go),
     );
@@ -86,7 +103,8 @@ export class Tutorial {
     setText(this._title, step.title);
     setText(this._text, step.text);
     setText(this._hint, step.hint);
-    setText(this._verdict, "");
+    this._say("");
+    this._misses = 0;
     this._matters.hidden = true;
     this._go.hidden = true;
     this._check.hidden = false;
@@ -96,36 +114,91 @@ export class Tutorial {
     this._spotlight.show(step.light);
   }
 
-  _soon() {
+  /** @param {boolean} loud */
+  _soon(loud) {
     clearTimeout(this._timer);
     if (this.element.dataset.ok) return;
-    this._timer = setTimeout(() => this._ask(true), SETTLED);
+    this._timer = setTimeout(() => this._ask({ loud }), SETTLED);
   }
 
   /**
-   * `loud`: something was done, so say what is still wrong; otherwise only praise.
-   * @param {boolean} loud
+   * `loud`: something was done, so say what is wrong about it; `all`: also that nothing was done yet.
+   * @param {{loud?: boolean, all?: boolean}} how
    */
-  async _ask(loud) {
+  async _ask({ loud = false, all = false }) {
     const { id } = this._steps[this._index];
     const asked = ++this._asked;
     const annotations = [...this._store.people().values()];
     try {
-      const { ok, message } = await this._api.checkTutorial({ step: id, frame: this._store.current, annotations });
+      const verdict = await this._api.checkTutorial({ step: id, frame: this._store.current, annotations });
       if (asked !== this._asked) return; // an answer to an older question
-      if (ok) this._praise(message);
-      else if (loud) setText(this._verdict, message);
+      if (verdict.ok) return this._praise(verdict.message);
+      const quiet = !verdict.mistake || QUIET.has(verdict.mistake);
+      if (loud && !quiet) this._correct(verdict);
+      else if (all) this._say(verdict.message);
+      this._point(verdict);
     } catch (error) {
-      if (loud)
-        setText(this._verdict, gettext("The answer could not be checked: {error}", { error: failureWords(error) }));
+      if (loud) this._say(gettext("The answer could not be checked: {error}", { error: failureWords(error) }));
     }
+  }
+
+  /** @param {string} message */
+  _say(message) {
+    setText(this._verdict, message);
+    this._hint.hidden = message !== ""; // there is room for one of them
+  }
+
+  /** What was wrong, and which way it goes. @param {Verdict} verdict */
+  _correct(verdict) {
+    this._misses += 1;
+    const { person, mistake, message } = verdict;
+    this._say(`${message} ${this._advice(verdict)}`.trim());
+    if (mistake !== "body" && mistake !== "other") return;
+    for (let left = UNDONE; left && person !== null && this._store.people().has(person); left--) this._history.undo();
+  }
+
+  /** @param {Verdict} verdict */
+  _advice({ person, feet, mistake }) {
+    if (this._misses >= ENOUGH && feet !== null)
+      return gettext("The dashed ring lies where the feet are: click into it with the right button.");
+    const one = person === null ? undefined : this._store.people().get(person);
+    if (!one || feet === null || (mistake !== "off" && mistake !== "head")) return "";
+    const pane = [this._panes.active, ...this._panes.shown].find(({ view }) => isCamera(view) && view.box(one));
+    const axes = pane?.view.axes(one);
+    if (!pane || !axes) return "";
+    const { columns } = this._panes.scene.grid;
+    const [from, to] = [one.position, feet].map((place) => [place % columns, Math.floor(place / columns)]);
+    return adviceFor(presses(axes, to[0] - from[0], to[1] - from[1]), pane.view.title, keyFor);
+  }
+
+  /** Who is meant, and which way it goes. @param {Verdict} verdict */
+  _point({ person, feet }) {
+    const { id, light } = this._steps[this._index];
+    if (feet === null) return this._spotlight.show(light);
+    const there = person === null ? undefined : this._store.people().get(person);
+    const view = id === "place" && !there ? this._bestView(feet) : null;
+    const from = there && this._misses > 0 ? there.position : null;
+    const target = { position: feet, view, from, shown: this._misses >= ENOUGH };
+    this._spotlight.show({ ...light, parts: view ? `[data-view="${view}"]` : light.parts, target });
+  }
+
+  /** The view in which somebody there is seen largest. @param {number} position */
+  _bestView(position) {
+    const somebody = annotation({ person: -1, position });
+    const tall = this._panes.shown.flatMap(({ view }) => {
+      const box = isCamera(view) ? view.box(somebody) : null;
+      const { width, height } = view.size;
+      const whole = box && box.xmin >= 0 && box.ymin >= 0 && box.xmax < width && box.ymax < height;
+      return box && whole ? [{ id: view.id, height: box.ymax - box.ymin }] : [];
+    });
+    tall.sort((one, other) => other.height - one.height);
+    return tall[0]?.id ?? null;
   }
 
   /** @param {string} message */
   _praise(message) {
     const last = this._index === this._steps.length - 1;
-    setText(this._verdict, `✓ ${message}`);
-    setText(this._hint, "");
+    this._say(`✓ ${message}`);
     this.element.dataset.ok = "true";
     this._check.hidden = true;
     this._go.hidden = false;
@@ -148,7 +221,7 @@ export class Tutorial {
       await this._api.finishTutorial();
       window.location.assign(this._home);
     } catch (error) {
-      setText(this._verdict, gettext("Not finished yet: {reason}", { reason: failureWords(error) }));
+      this._say(gettext("Not finished yet: {reason}", { reason: failureWords(error) }));
     }
   }
 
@@ -169,8 +242,13 @@ export class Tutorial {
     this._index = index;
     this._show();
     if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
-    return this._ask(false);
+    return this._ask({});
   }
+}
+
+/** @param {import("../../views/pane.js").View} view */
+function isCamera({ id }) {
+  return id.startsWith("camera");
 }
 
 /**

@@ -19,52 +19,45 @@ export function tutorialSteps() {
     {
       id: "place",
       frame: 0,
-      title: gettext("Mark somebody who has no box"),
+      title: gettext("Mark somebody"),
       text: gettext(
-        "One person in this frame has no box. Find them, and click on the ground between their feet, in the view where you see them best. The box appears in every view at once.",
+        "The person in the ring has no box. Click on the ground between their shoes – not on the body. A box appears in every view at once.",
       ),
-      hint: gettext(
-        "Inside somebody else's box, hold Shift while you click. A little off? The arrow keys move by 2.5 cm.",
-      ),
-      light: { parts: '[data-view^="camera"]' },
+      hint: gettext("For practice only three people have boxes here; the others do not matter yet."),
+      light: {},
     },
     {
       id: "correct",
       frame: 0,
       title: gettext("Correct a yellow box"),
       text: gettext(
-        "The yellow, dashed box in the ring was carried over and stands beside its person. Select it: click on it, or press {next}. Then click between the person's feet with the right button, or move it with the arrow keys, until it fits in all views.",
+        "The yellow, dashed box stands beside its person. Click on it, or press {next}. Then click with the right button between the person's shoes. All boxes are equally tall: one may stand out over a head, only the feet count.",
         { next: keyFor("nextCarried") },
       ),
-      hint: gettext(
-        "{zoom} zooms every view to it, and back. Moving says that you looked: it is not yellow any more.",
-        { zoom: keyFor("zoom") },
-      ),
+      hint: gettext("{zoom} shows it close up in every view, and back. Arrow keys move it by 2.5 cm.", {
+        zoom: keyFor("zoom"),
+      }),
       light: { people: isYellow },
     },
     {
       id: "remove",
       frame: 0,
       title: gettext("Remove a box with nobody in it"),
-      text: gettext(
-        "One box has nobody in it. Look at the boxes in several views. Found? Click on it and press {remove}.",
-        { remove: keyFor("remove") },
-      ),
+      text: gettext("One box has nobody in it: look at it in several views. Click on it and press {remove}.", {
+        remove: keyFor("remove"),
+      }),
       hint: gettext("Wrong one? {undo} brings it back.", { undo: keyFor("undo") }),
-      light: { parts: '[data-view^="camera"]' },
+      light: {},
     },
     {
       id: "next",
       frame: 1,
-      title: gettext("Go to the next frame"),
+      title: gettext("The next frame, one by one"),
       text: gettext(
-        "Press {on}. Two people there are yellow: they still stand where they were a frame ago. Right-click between their feet, or use the arrow keys, until nobody is yellow.",
-        { on: keyFor("nextFrame") },
+        "Press {on}: everybody has a box here, but two walked on, and their yellow boxes stayed behind. Press {round}: each comes close up in all views. Click with the right button between the shoes, and the next one comes; where a box is right, press {validateNext}.",
+        { on: keyFor("nextFrame"), round: keyFor("round"), validateNext: keyFor("validateNext") },
       ),
-      hint: gettext("{next} goes to the next yellow person. One who stands right already only needs {validate}.", {
-        next: keyFor("nextCarried"),
-        validate: keyFor("validate"),
-      }),
+      hint: gettext("Inside somebody else's box, hold Shift while you click to mark somebody new."),
       light: { parts: '[data-action="nextFrame"]', people: isYellow },
     },
   ];
@@ -74,7 +67,7 @@ export function tutorialSteps() {
 export function whatMatters() {
   return [
     gettext("Everybody on the ground area has a box, also those only one view shows well."),
-    gettext("Feet are within 15 cm: look in two views before you believe one."),
+    gettext("Feet are within 15 cm: look in two views before you believe one. Heads may stand out."),
     gettext("The same person keeps the same number in all frames."),
     gettext("Nobody is left yellow, and no box is empty."),
     gettext("Take the time it takes. {help} shows every key.", { help: keyFor("help") }),
