@@ -181,7 +181,7 @@ def test_a_click_too_far_off_is_told_by_how_much_without_being_asked(page: Page,
     click_truth(page, off)
     page.keyboard.up("Shift")
     expect(card).to_contain_text(re.compile(r"(30|31) cm from the feet"))
-    expect(card).to_contain_text(re.compile(r"Press .+ times, with the pointer over C\d"))
+    expect(card).to_contain_text(re.compile(r"Press .+×, with the pointer over C\d"))
     expect(page.get_by_role("button", name="Next step")).to_be_hidden()
 
 

@@ -20,7 +20,7 @@ test("the way is said in the keys of the view, most presses first", () => {
 
 test("a short way is said in keys", () => {
   const words = adviceFor(presses(AXES, -2, 5), "C1", label);
-  assert.equal(words, "Press ↑ 5 times and → 2 times, with the pointer over C1.");
+  assert.equal(words, "Press ↑ 5× and → 2×, with the pointer over C1.");
 });
 
 test("a long way is said in words, for a click is quicker", () => {

@@ -43,6 +43,6 @@ export function adviceFor(needed, view, label) {
       view,
       direction: needed.map(({ key }) => WORDS[key]()).join(gettext(" and ")),
     });
-  const keys = needed.map(({ key, times }) => gettext("{key} {n} times", { key: label(key), n: times }));
+  const keys = needed.map(({ key, times }) => gettext("{key} {n}×", { key: label(key), n: times }));
   return gettext("Press {keys}, with the pointer over {view}.", { keys: keys.join(gettext(" and ")), view });
 }

@@ -104,6 +104,7 @@ export class Tutorial {
     setText(this._text, step.text);
     setText(this._hint, step.hint);
     this._say("");
+    this._verdict.hidden = false;
     this._misses = 0;
     this._matters.hidden = true;
     this._go.hidden = true;
@@ -210,7 +211,8 @@ export class Tutorial {
 
   /** The last word: what is paid attention to. */
   _close() {
-    setText(this._title, gettext("That is all you need. What is looked at in your work:"));
+    setText(this._title, gettext("✓ Right. What is looked at in your work:"));
+    this._verdict.hidden = true; // the title says it
     setText(this._text, "");
     this._matters.hidden = false;
   }

@@ -66,10 +66,13 @@ export function tutorialSteps() {
 /** What is paid attention to in real work. */
 export function whatMatters() {
   return [
-    gettext("Everybody on the ground area has a box, also those only one view shows well."),
-    gettext("Feet are within 15 cm: look in two views before you believe one. Heads may stand out."),
-    gettext("The same person keeps the same number in all frames."),
+    gettext("Everybody on the ground area has a box."),
+    gettext("Feet are within 15 cm, looked at in two views."),
+    gettext("One person keeps one number in all frames."),
     gettext("Nobody is left yellow, and no box is empty."),
-    gettext("Take the time it takes. {help} shows every key.", { help: keyFor("help") }),
+    gettext("{help} shows every key. After the last frame, {on} hands in your work.", {
+      help: keyFor("help"),
+      on: keyFor("nextFrame"),
+    }),
   ];
 }
