@@ -64,6 +64,7 @@ export class Views {
   showAll() {
     this.settings.set("largeView", "");
     this.settings.set("hiddenViews", []);
+    this.panes.zoom(false);
   }
 
   /**

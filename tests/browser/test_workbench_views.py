@@ -264,3 +264,43 @@ INK = """(view) => {
   return sum;
 }"""
 LOOK = """(view) => document.querySelector(`[data-view="camera-${view}"] .pane-picture`).toDataURL()"""
+
+
+@pytest.mark.parametrize("way", ["Escape", "0", "button"])
+def test_a_view_zoomed_by_hand_is_brought_back(bench: Callable[..., Bench], way: str) -> None:
+    opened = bench(people=1, marked=False).open()
+    pane = opened.pane(0)
+    pane.hover()
+    opened.page.mouse.wheel(0, -400)
+    opened.painted()
+    assert float(pane.get_attribute("data-zoom") or 0) > 2
+    if way == "button":
+        pane.get_by_role("button", name="Whole view").click()
+    else:
+        opened.press(way)
+    expect(pane).to_have_attribute("data-zoom", "1.000")
+    expect(pane.get_by_role("button", name="Whole view")).to_be_hidden()
+    assert opened.rows() == []  # the button placed nobody
+
+
+def test_escape_brings_a_view_back_before_it_lets_go_of_a_person(bench: Callable[..., Bench]) -> None:
+    opened = bench(people=1).open()
+    opened.press("Tab")
+    opened.pane(0).hover()
+    opened.page.mouse.wheel(0, -400)
+    opened.painted()
+    opened.press("Escape")
+    expect(opened.pane(0)).to_have_attribute("data-zoom", "1.000")
+    assert opened.selected() == "1"
+    opened.press("Escape")
+    assert opened.selected() is None
+
+
+def test_the_wheel_stops_before_pixels_become_soup(bench: Callable[..., Bench]) -> None:
+    opened = bench(people=1, marked=False).open()
+    pane = opened.pane(0)
+    pane.hover()
+    for _ in range(6):
+        opened.page.mouse.wheel(0, -1200)
+    opened.painted()
+    assert float(pane.get_attribute("data-zoom") or 0) == pytest.approx(12, abs=0.01)

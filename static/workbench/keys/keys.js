@@ -71,7 +71,7 @@ const TABLE = [
     ["1", "2", "3", "4", "5", "6", "7", "8", "9"],
     () => gettext("hide that view, or show it again"),
   ],
-  ["allViews", "view", ["0"], () => gettext("all views, alike")],
+  ["allViews", "view", ["0"], () => gettext("all views, each whole and of equal size")],
   ["views", "view", ["u"], () => gettext("which views are shown, brightness and contrast of each")],
   ["outline", "view", ["t"], () => gettext("show the border of the ground area")],
   ["grid", "view", ["Shift+t"], () => gettext("show a grid of metres on the ground")],
