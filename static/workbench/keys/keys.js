@@ -58,6 +58,7 @@ const TABLE = [
   ["copyNext", "frame", ["Shift+c"], () => gettext("copy a person exactly from the next frame")],
   ["fill", "frame", ["i"], () => gettext("fill in between the frames in which the person is validated")],
   ["nextTask", "frame", ["g"], () => gettext("go to what is left to do")],
+  ["finish", "frame", ["Ctrl+Enter"], () => gettext("finish: which frames are left, and hand in the batch")],
   ["play", "frame", ["k"], () => gettext("play the frames, and stop")],
   ["lookNext", "frame", [">"], () => gettext("look at the next frame, without saying anything about this one")],
   ["lookPrevious", "frame", ["<"], () => gettext("look at the previous frame")],
