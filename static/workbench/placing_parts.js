@@ -1,4 +1,5 @@
 import { KeyRepeat } from "./keys/key_repeat.js";
+import { CloseLooks } from "./people/close_looks.js";
 import { Queue } from "./people/queue.js";
 import { Arrows, directionItems } from "./placing/directions.js";
 import { Dragging } from "./placing/dragging.js";
@@ -33,5 +34,6 @@ export function placingParts({ scene, store, history, saver, loader }, { setting
   const sizes = new Sizes({ scene, store, history, guard, loader, notices });
   const dragging = new Dragging({ scene, store, panes, guard, moving, sizes });
   const queue = new Queue({ scene, store });
-  return { guard, heads, ghost, moving, sizes, dragging, queue };
+  const closeLooks = new CloseLooks({ store, panes });
+  return { guard, heads, ghost, moving, sizes, dragging, queue, closeLooks };
 }
