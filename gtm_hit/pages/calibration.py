@@ -140,7 +140,7 @@ def _views(dataset: Dataset, seen: dict[str, Any]) -> list[View]:
     picture = seen["picture"]
     rows = list(dataset.cameras.all())
     if len(rows) != len(seen["cameras"]):
-        raise Http404(_("The dataset's cameras are others now."))
+        raise Http404(_("The dataset's cameras have changed."))
     images = picture["images"] or [""] * len(rows)
     return [
         View(

@@ -143,7 +143,7 @@ function problemOf(store, { kind, person, other }) {
   }
   if (kind === "remove") return null;
   if (other === null || !Number.isInteger(other) || other < 0 || other > LARGEST) {
-    return kind === "rename" ? gettext("Which number shall it be?") : gettext("Who is the other person?");
+    return kind === "rename" ? gettext("What is the new number?") : gettext("Who is the other person?");
   }
   if (other === person) return gettext("That is the number it has");
   if (kind === "rename" && !store.isUnused(other) && !framesWith(store, other).length) {

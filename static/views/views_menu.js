@@ -66,7 +66,7 @@ export class ViewsMenu {
       element(
         "div",
         { className: "dialog-buttons" },
-        this._button(gettext("Show all, alike"), () => this._views.showAll()),
+        this._button(gettext("Show all, same size"), () => this._views.showAll()),
         this._button(gettext("Close"), () => this.toggle()),
       ),
     ];

@@ -113,6 +113,8 @@ export class Bar {
     const index = store.numbers.indexOf(store.current);
     setText(this._place, gettext("Frame {place} of {n}", { place: index + 1, n: store.numbers.length }));
     this._place.title = gettext("number {number}", { number: store.current });
+    // Of many open tabs each says which one it is.
+    document.title = gettext("Frame {place} · {name}", { place: index + 1, name: nameOf(this.scene) });
     setText(this._left, this._countWords());
     const status = saver.status();
     const { text, link } = saveWords(status, saver.revision(store.current), this.scene.mode === "tutorial");
@@ -142,7 +144,7 @@ function toggles() {
   return [
     { id: "round", text: gettext("One by one"), isOn: ({ closeUp }) => closeUp },
     { id: "zoom", text: gettext("Zoom"), isOn: ({ zoomed }) => zoomed },
-    { id: "outline", text: gettext("Area"), isOn: ({ options }) => options.outline },
+    { id: "outline", text: gettext("Border"), isOn: ({ options }) => options.outline },
     { id: "directions", text: gettext("Arrows"), isOn: ({ options }) => options.directions },
   ];
 }

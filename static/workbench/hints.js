@@ -74,7 +74,7 @@ function words(id) {
   const texts = {
     moving: () =>
       gettext(
-        "Arrow keys move the person by one position, {far} by ten. {zoom} shows the person large in all views, {help} all keys.",
+        "Arrow keys move the person by one step, {far} by ten. {zoom} shows the person large in all views, {help} all keys.",
         {
           far: keyFor("leftFar"),
           zoom: keyFor("zoom"),

@@ -30,7 +30,7 @@ export function showSettings(settings) {
   const reset = element(
     "button",
     { type: "button", onclick: () => resetAll(settings, fields) },
-    gettext("As it was at first"),
+    gettext("Reset to defaults"),
   );
   const close = element("button", { className: "main", autofocus: true }, gettext("Close"));
   const dialog = openDialog({ title: gettext("Settings"), body: fields });

@@ -65,7 +65,7 @@ def test_a_clash_is_refused_with_what_the_key_means_already(bench: Callable[...,
     opened = bench().open()
     opened.press("?")
     change(opened, "outline", "z")
-    expect(opened.page.locator(".key-message")).to_contain_text("Z means already: zoom all views")
+    expect(opened.page.locator(".key-message")).to_contain_text("Z is already used: zoom all views")
     opened.press("o")
     expect(opened.page.locator("[data-key-of=outline]")).to_have_text("O")
     expect(opened.page.locator("[data-key-of=zoom]")).to_have_text("Z")

@@ -312,7 +312,7 @@ def test_settings_are_remembered_by_the_browser(bench: Callable[..., Bench]) -> 
     opened.open().press(",")
     expect(dialog.get_by_label("Arrow keys follow")).to_have_value("the axes of the ground, in every view")
     expect(dialog.get_by_label("Show what a click would place")).not_to_be_checked()
-    dialog.get_by_role("button", name="As it was at first").click()
+    dialog.get_by_role("button", name="Reset to defaults").click()
     expect(dialog.get_by_label("Show what a click would place")).to_be_checked()
     dialog.get_by_role("button", name="Close").click()
     expect(dialog).to_have_count(0)

@@ -114,7 +114,7 @@ def test_home_leads_staff_to_the_datasets_and_tells_others_what_this_is(client: 
 def test_logging_in_leads_to_the_page_asked_for(client: Client, dataset: Dataset) -> None:
     User.objects.create_user("vera", password="long enough", is_superuser=True)
     refused = client.post("/login/?next=/datasets/square/", {"username": "vera", "password": "wrong"})
-    assert "do not fit together" in text(refused)
+    assert "do not match" in text(refused)
     address = "/login/?next=/datasets/square/"
     assert 'name="next" value="/datasets/square/"' in text(client.get(address))
     right = {"username": "vera", "password": "long enough", "next": "/datasets/square/"}

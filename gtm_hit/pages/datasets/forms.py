@@ -21,6 +21,7 @@ from gtm_hit.ops.datasets.videos.plan import USUAL
 from gtm_hit.ops.desk import placing
 from gtm_hit.ops.desk.errors import DeskError
 from gtm_hit.ops.files import sources
+from gtm_hit.pages.common.fields import AddressNameField
 
 PRESET_NAMES = {"wildtrack": "WILDTRACK", "multiviewx": "MultiviewX"}
 
@@ -28,12 +29,14 @@ PRESET_NAMES = {"wildtrack": "WILDTRACK", "multiviewx": "MultiviewX"}
 class SceneForm(forms.Form):
     """What an import is told besides its files."""
 
-    slug = forms.SlugField(
+    slug = AddressNameField(
         label=gettext_lazy("Name in addresses"),
         max_length=80,
-        help_text=gettext_lazy("An existing dataset gets the frames it does not have yet."),
+        help_text=gettext_lazy(
+            "Blanks become hyphens. An existing dataset gets the frames it does not have yet."
+        ),
     )
-    name = forms.CharField(label=gettext_lazy("Name in words"), max_length=200, required=False)
+    name = forms.CharField(label=gettext_lazy("Display name"), max_length=200, required=False)
     preset = forms.ChoiceField(
         label=gettext_lazy("As published with"),
         required=False,
@@ -135,7 +138,31 @@ class DatasetForm(SceneForm):
     def __init__(self, user: User, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self.user = user
-        choose(self.fields["source"], sources.offered(user))
+        self.kept: sources.Source | None = None
+        sent = sources.source_of(str(self.data.get("source", "")), user)
+        self._offer([sent] if sent else [])
+
+    def _offer(self, more: list[sources.Source]) -> None:
+        offered = sources.offered(self.user)
+        choose(self.fields["source"], offered + [each for each in more if each not in offered])
+
+    def archive_source(self) -> sources.Source | None:
+        """The archive just sent, put among the sources; None with the form's errors."""
+        try:
+            return sources.keep(self.cleaned_data["archive"])
+        except FormatError as error:
+            for problem in error.problems:
+                self.add_error("archive", ": ".join(part for part in (problem.place, problem.reason) if part))
+            return None
+
+    def keep_archive(self) -> None:
+        """Of a form refused for something else: what took an hour to send need not be sent again."""
+        if not self.cleaned_data.get("archive") or "archive" in self.errors:
+            return
+        self.kept = self.archive_source()
+        if self.kept:
+            self._offer([self.kept])
+            self.data = {**dict(self.data.items()), "source": self.kept.key}
 
     def clean_slug(self) -> str:
         slug: str = self.cleaned_data["slug"]

@@ -8,7 +8,6 @@ from django.urls import path
 from django.utils.translation import gettext as _
 from django.views.decorators.http import require_http_methods
 
-from gtm_hit.formats.problems import FormatError
 from gtm_hit.models import Job, VideoSync
 from gtm_hit.ops.access.jobs import jobs_of
 from gtm_hit.ops.access.roles import Role
@@ -29,8 +28,11 @@ KINDS = [Job.Kind.IMPORT_DATASET, Job.Kind.IMPORT_VIDEOS]
 def new_dataset(request: StaffRequest) -> HttpResponse:
     initial = {"desk": request.GET.get("desk", "")}
     form = DatasetForm(request.user, request.POST or None, request.FILES or None, initial=initial)
-    if request.method == "POST" and form.is_valid() and (source := _chosen(form)):
-        return redirect("job", pk=import_jobs.start_import(source, form.options(), request.user).pk)
+    if request.method == "POST":
+        if not form.is_valid():
+            form.keep_archive()
+        elif source := _chosen(form):
+            return redirect("job", pk=import_jobs.start_import(source, form.options(), request.user).pk)
     found = jobs_of(request.user).filter(kind__in=KINDS)
     context = {
         "section": "datasets",
@@ -75,15 +77,9 @@ def new_videos(request: StaffRequest) -> HttpResponse:
 
 def _chosen(form: DatasetForm) -> sources.Source | None:
     """The archive just uploaded, or the source on the server; None with the form's errors."""
-    archive = form.cleaned_data.get("archive")
-    if not archive:
-        return sources.source(form.cleaned_data["source"])
-    try:
-        return sources.keep(archive)
-    except FormatError as error:
-        for problem in error.problems:
-            form.add_error("archive", ": ".join(part for part in (problem.place, problem.reason) if part))
-        return None
+    if form.cleaned_data.get("archive"):
+        return form.archive_source()
+    return sources.source(form.cleaned_data["source"])
 
 
 def _first_values(request: StaffRequest) -> dict[str, str]:

@@ -20,13 +20,14 @@ from gtm_hit.ops.access.roles import Role, Somebody, datasets_of, may_everywhere
 from gtm_hit.ops.desk import checks, desks, overview
 from gtm_hit.ops.desk.errors import DeskError
 from gtm_hit.pages.common.access import StaffRequest, needs
+from gtm_hit.pages.common.fields import AddressNameField
 from gtm_hit.pages.desk.common import desk_or_404, frame, tried
 
 ROWS_PER_PAGE = 50
 
 
 class DeskForm(forms.Form):
-    slug = forms.SlugField(label=gettext_lazy("Name in addresses"), max_length=80)
+    slug = AddressNameField(label=gettext_lazy("Name in addresses"), max_length=80)
     title = forms.CharField(label=gettext_lazy("Title"), max_length=200, required=False)
     dataset = forms.ModelChoiceField(
         Dataset.objects.none(),

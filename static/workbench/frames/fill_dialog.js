@@ -36,7 +36,7 @@ export async function chooseFill(store, scene, mapColours, person) {
     ],
     buttons: [
       ...offers.map(({ id, label }, index) => ({ id, label, main: index === 0 })),
-      { id: "cancel", label: gettext("Fill nothing") },
+      { id: "cancel", label: gettext("Cancel") },
     ],
   });
   // The map shows what the button does that one is about to press.

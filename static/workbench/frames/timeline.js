@@ -58,7 +58,7 @@ export class Timeline {
       { className: "timeline", "aria-label": gettext("Frames") },
       this._play,
       this._frames,
-      this._button("filmstrip", gettext("Strip"), perform),
+      this._button("filmstrip", gettext("Over time"), perform),
       this._button("nextTask", gettext("What is left"), perform),
       this._finish,
     );

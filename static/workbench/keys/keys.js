@@ -18,14 +18,14 @@ const GROUPS = {
 
 /** @type {[id: string, group: Group, keys: string[], label: () => string][]} */
 const TABLE = [
-  ["left", "person", ["ArrowLeft"], () => gettext("one position to the left, as the active view shows it")],
-  ["right", "person", ["ArrowRight"], () => gettext("one position to the right")],
-  ["up", "person", ["ArrowUp"], () => gettext("one position upwards: away from the camera")],
-  ["down", "person", ["ArrowDown"], () => gettext("one position downwards: towards the camera")],
-  ["leftFar", "person", ["Shift+ArrowLeft"], () => gettext("ten positions to the left")],
-  ["rightFar", "person", ["Shift+ArrowRight"], () => gettext("ten positions to the right")],
-  ["upFar", "person", ["Shift+ArrowUp"], () => gettext("ten positions upwards")],
-  ["downFar", "person", ["Shift+ArrowDown"], () => gettext("ten positions downwards")],
+  ["left", "person", ["ArrowLeft"], () => gettext("one step to the left, as the active view shows it: 2.5 cm on most grids")],
+  ["right", "person", ["ArrowRight"], () => gettext("one step to the right")],
+  ["up", "person", ["ArrowUp"], () => gettext("one step away from the camera")],
+  ["down", "person", ["ArrowDown"], () => gettext("one step towards the camera")],
+  ["leftFar", "person", ["Shift+ArrowLeft"], () => gettext("ten steps to the left")],
+  ["rightFar", "person", ["Shift+ArrowRight"], () => gettext("ten steps to the right")],
+  ["upFar", "person", ["Shift+ArrowUp"], () => gettext("ten steps away from the camera")],
+  ["downFar", "person", ["Shift+ArrowDown"], () => gettext("ten steps towards the camera")],
   ["moveHere", "person", ["d"], () => gettext("move under the pointer, as a right click does")],
   ["heads", "person", ["y"], () => gettext("clicks mean the top of the head, for hidden feet; and back")],
   ["validate", "person", ["e"], () => gettext("validate: the position is right")],
@@ -85,7 +85,7 @@ const TABLE = [
   ["history", "frame", ["Shift+h"], () => gettext("who saved this frame and when; look at it and restore it")],
   ["help", "other", ["?", "F1"], () => gettext("this sheet")],
   ["settings", "other", [","], () => gettext("settings")],
-  ["controls", "other", ["F6"], () => gettext("let Tab move between the buttons; Escape returns to annotating")],
+  ["controls", "other", ["F6"], () => gettext("move between buttons with Tab; Escape returns to annotating")],
   ["escape", "other", ["Escape"], () => gettext("leave zoom, then let go of the person")],
 ];
 

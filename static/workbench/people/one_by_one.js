@@ -116,7 +116,7 @@ export class OneByOne {
 
   _sayAllSeen() {
     this._notices.say(
-      gettext("Nobody is yellow. Has somebody no box? Click their feet. {on} goes on, {back} goes back", {
+      gettext("Nobody is yellow. Is somebody without a box? Click between their feet. {on} goes on, {back} goes back", {
         on: keyFor("nextFrame"),
         back: keyFor("roundBack"),
       }),
@@ -127,7 +127,7 @@ export class OneByOne {
   _back() {
     let person = this._passed.pop();
     while (person !== undefined && !this._store.person(person)) person = this._passed.pop();
-    if (person === undefined) return this._notices.say(gettext("Nobody of this frame was looked at before"));
+    if (person === undefined) return this._notices.say(gettext("You have not looked at anybody in this frame yet"));
     this._store.select(person);
     this._panes.zoom(true);
   }

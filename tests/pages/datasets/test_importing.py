@@ -118,7 +118,7 @@ def test_a_hostile_archive_is_refused_on_the_form(staff: Client, tmp_path: Path)
     [
         ({}, "Choose an archive here"),
         ({"source": "incoming/../etc"}, "Select a valid choice"),
-        ({"slug": "no slug"}, "valid “slug”"),
+        ({"slug": "!!"}, "Use at least one letter from a to z or a digit"),
         ({"columns": ""}, "Needed where no published dataset is chosen"),
         ({"step": "-1"}, "greater than or equal to 0"),
         ({"columns": "100000", "rows": "100000"}, "--grid has 10,000,000,000 positions; at most"),
@@ -129,6 +129,34 @@ def test_wrong_values_are_told_on_the_form(staff: Client, changes: dict[str, Any
     response = staff.post("/imports/", form(**changes))
     assert response.status_code == 200 and reason in text(response)
     assert not Job.objects.exists()
+
+
+def test_an_archive_sent_with_a_wrong_value_is_kept_and_chosen(staff: Client, tmp_path: Path) -> None:
+    data = made(tmp_path / "plaza.zip", ("Image_subsets/C1/0.png", b"x")).read_bytes()
+    sent = form(slug="!!", archive=SimpleUploadedFile("plaza.zip", data))
+    page = text(staff.post("/imports/", sent))
+    assert "need not be sent again" in page
+    (kept,) = (tmp_path / "uploads").iterdir()
+    assert f'<option value="uploads/{kept.name}" selected>' in page
+    staff.post("/imports/", form(slug="plaza", source=f"uploads/{kept.name}"))
+    assert Job.objects.get().parameters["source"] == f"uploads/{kept.name}"
+
+
+def test_an_archive_that_is_wrong_itself_is_not_kept(staff: Client, tmp_path: Path) -> None:
+    data = made(tmp_path / "evil.zip", ("../evil.txt", b"x")).read_bytes()
+    page = text(staff.post("/imports/", form(slug="!!", archive=SimpleUploadedFile("evil.zip", data))))
+    assert "leads out of the archive" in page and "need not be sent again" not in page
+    assert list((tmp_path / "uploads").iterdir()) == []
+
+
+@pytest.mark.parametrize(("typed", "made"), [("Our plaza, 2", "our-plaza-2"), ("Plaza_2", "Plaza_2")])
+def test_a_name_in_addresses_is_made_of_what_was_typed(
+    staff: Client, tmp_path: Path, typed: str, made: str
+) -> None:
+    (tmp_path / "incoming" / "plaza").mkdir(parents=True)
+    sent = {"slug": typed, "layer": "imported", "preset": "wildtrack", "source": "incoming/plaza"}
+    staff.post("/imports/", sent)
+    assert Job.objects.get().parameters["options"]["slug"] == made
 
 
 def test_a_preset_needs_nothing_else(staff: Client, tmp_path: Path) -> None:
