@@ -110,7 +110,10 @@ export class KeySheet {
     if (other)
       return setText(
         this.message,
-        gettext("{key} is already used: {what}. Press another key, or Esc", { key: keyName(pressed), what: other.label }),
+        gettext("{key} is already used: {what}. Press another key, or Esc", {
+          key: keyName(pressed),
+          what: other.label,
+        }),
       );
     const kept = row.keys.map((one) => (one === key ? pressed : one));
     this._stopWaiting();

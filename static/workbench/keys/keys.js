@@ -18,7 +18,12 @@ const GROUPS = {
 
 /** @type {[id: string, group: Group, keys: string[], label: () => string][]} */
 const TABLE = [
-  ["left", "person", ["ArrowLeft"], () => gettext("one step to the left, as the active view shows it: 2.5 cm on most grids")],
+  [
+    "left",
+    "person",
+    ["ArrowLeft"],
+    () => gettext("one step to the left, as the active view shows it: 2.5 cm on most grids"),
+  ],
   ["right", "person", ["ArrowRight"], () => gettext("one step to the right")],
   ["up", "person", ["ArrowUp"], () => gettext("one step away from the camera")],
   ["down", "person", ["ArrowDown"], () => gettext("one step towards the camera")],
