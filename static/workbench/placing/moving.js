@@ -84,20 +84,20 @@ export class Moving {
     if (!person || position === null || !this.moveTo(person, position, event)) return false;
     this.ghost.hide();
     this.multiViewClick.begin(pane, this.heads.pixel(pane, at, person));
-    this._sayFar(person, position, event);
+    this._sayFar(person, position);
     return true;
   }
 
   /**
    * Somebody jumped: perhaps only a menu was expected.
-   * @param {Annotation} person as before @param {number} position @param {Where} place
+   * @param {Annotation} person as before @param {number} position
    */
-  _sayFar({ person, position: before }, position, place) {
+  _sayFar({ person, position: before }, position) {
     const [from, to] = [this.scene.metres(before), this.scene.metres(position)];
     const metres = Math.hypot(to.x - from.x, to.y - from.y);
     if (metres <= JUMP) return;
     const words = { person, metres: metres.toFixed(1), key: keyFor("undo") };
-    this.guard.say(place, gettext("Person {person} moved by {metres} m – {key} brings it back", words));
+    this.guard.say(null, gettext("Person {person} moved by {metres} m – {key} brings it back", words));
   }
 
   /**
