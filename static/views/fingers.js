@@ -32,8 +32,7 @@ export class Fingers {
     const [before, distance] = [middle(pair), apart(pair)];
     Object.assign(finger, pane.local(event));
     const after = middle(pair);
-    const factor = pane.zoomLimit(Math.max(apart(pair), 1) / Math.max(distance, 1));
-    const zoomed = pane.transform.zoomAt(factor, before.x, before.y);
+    const zoomed = pane.transform.zoomAt(Math.max(apart(pair), 1) / Math.max(distance, 1), before.x, before.y);
     pane.look(zoomed.moved(after.x - before.x, after.y - before.y));
     return true;
   }

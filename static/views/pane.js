@@ -48,8 +48,6 @@ import { clamped, fit, resized } from "./transform.js";
  * @typedef {{frame: number, people: ReadonlyMap<number, Person>, selection: number|null, options: Options,
  *            extras: Extra}} Model
  */
-const MOST = 12; // times as large as the whole view: as far as a wheel or fingers zoom
-
 export class Pane {
   /** @param {View} view @param {Model} model read at every paint */
   constructor(view, model) {
@@ -73,18 +71,12 @@ export class Pane {
       { type: "button", className: "pane-retry", hidden: true, onclick: () => this.view.retry(this._model.frame) },
       gettext("Try again"),
     );
-    this._whole = element(
-      "button",
-      { type: "button", className: "pane-whole", hidden: true, onclick: () => this.fit() },
-      gettext("Whole view"),
-    );
     this.element = element(
       "section",
       { className: "pane", "data-view": this.view.id, "aria-label": this.view.title },
       this._picture,
       this._marks,
       element("h2", { className: "pane-title" }, this.view.title),
-      this._whole,
       element("div", { className: "pane-message" }, this._note, this._retry),
     );
     this._observer = new ResizeObserver(() => this._resize());
@@ -142,16 +134,6 @@ export class Pane {
   }
 
   /**
-   * So much of a wished zoom that pixels do not become soup by hand; what is zoomed further goes no further.
-   * @param {number} factor
-   */
-  zoomLimit(factor) {
-    if (!this.transform) return factor;
-    const most = MOST * fit(this.view.size, this.room).scale;
-    return Math.min(factor, Math.max(most / this.transform.scale, 1));
-  }
-
-  /**
    * A pointer event's place, in units of the pane.
    * @param {MouseEvent} event @returns {XY}
    */
@@ -201,7 +183,6 @@ export class Pane {
   /** @param {Transform} transform @param {boolean} fitted */
   _use(transform, fitted) {
     this._fitted = fitted;
-    this._whole.hidden = fitted;
     if (this.transform?.equals(transform)) return;
     this.transform = transform;
     this.element.dataset.zoom = (transform.scale / fit(this.view.size, this.room).scale).toFixed(3);

@@ -247,7 +247,7 @@ export class Pointer {
     if (!pane.transform) return;
     const pixels = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? event.deltaY * 32 : event.deltaY;
     const { x, y } = pane.local(event);
-    pane.look(pane.transform.zoomAt(pane.zoomLimit(Math.exp(-pixels / 400)), x, y));
+    pane.look(pane.transform.zoomAt(Math.exp(-pixels / 400), x, y));
     this._hover(pane, event);
   }
 }

@@ -64,7 +64,6 @@ export class Views {
   showAll() {
     this.settings.set("largeView", "");
     this.settings.set("hiddenViews", []);
-    this.panes.zoom(false);
   }
 
   /**

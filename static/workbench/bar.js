@@ -113,8 +113,6 @@ export class Bar {
     const index = store.numbers.indexOf(store.current);
     setText(this._place, gettext("Frame {place} of {n}", { place: index + 1, n: store.numbers.length }));
     this._place.title = gettext("number {number}", { number: store.current });
-    // Of many open tabs each says which one it is.
-    document.title = gettext("Frame {place} · {name}", { place: index + 1, name: nameOf(this.scene) });
     setText(this._left, this._countWords());
     const status = saver.status();
     const { text, link } = saveWords(status, saver.revision(store.current), this.scene.mode === "tutorial");

@@ -68,7 +68,7 @@ export class KeyActions {
     this._setControls(false);
     if (this._dragging.cancel()) return;
     if (this._heads.active) return this._heads.toggle(false);
-    if (this._panes.zoomed || this._panes.shown.some(({ fitted }) => !fitted)) return this._panes.zoom(false);
+    if (this._panes.zoomed) return this._panes.zoom(false);
     this._store.select(null);
   }
 

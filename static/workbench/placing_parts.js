@@ -1,5 +1,4 @@
 import { KeyRepeat } from "./keys/key_repeat.js";
-import { CloseLooks } from "./people/close_looks.js";
 import { Queue } from "./people/queue.js";
 import { Arrows, directionItems } from "./placing/directions.js";
 import { Dragging } from "./placing/dragging.js";
@@ -34,6 +33,5 @@ export function placingParts({ scene, store, history, saver, loader }, { setting
   const sizes = new Sizes({ scene, store, history, guard, loader, notices });
   const dragging = new Dragging({ scene, store, panes, guard, moving, sizes });
   const queue = new Queue({ scene, store });
-  const closeLooks = new CloseLooks({ store, panes });
-  return { guard, heads, ghost, moving, sizes, dragging, queue, closeLooks };
+  return { guard, heads, ghost, moving, sizes, dragging, queue };
 }

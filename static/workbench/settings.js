@@ -65,7 +65,7 @@ const TABLE = {
     value: true,
     group: "moving",
     label: () => gettext("Arrow keys held for long speed up"),
-    hint: () => gettext("The first 60 repeats move one step each, then two, then four."),
+    hint: () => gettext("The first 60 repeats move one position each, then two, then four."),
   },
   ghost: {
     value: true,
@@ -105,7 +105,7 @@ const TABLE = {
     value: true,
     group: "other",
     label: () => gettext("Hints"),
-    hint: () => gettext("Each hint is shown once. Switch hints off and on again to see them anew."),
+    hint: () => gettext("Each one comes once; switched on again, once more."),
   },
   hintsShown: { value: [] },
   keys: { value: {} },

@@ -292,10 +292,3 @@ def test_the_key_sheet_lists_every_key_of_the_table(bench: Callable[..., Bench])
         expect(dialog).to_contain_text(text)
     opened.press("Escape")
     expect(dialog).to_have_count(0)
-
-
-def test_each_tab_says_which_frame_and_batch_it_shows(bench: Callable[..., Bench]) -> None:
-    opened = bench(people=1).open()
-    expect(opened.page).to_have_title(re.compile(r"^Frame 1 · .+ batch 1"))
-    opened.press("n")
-    expect(opened.page).to_have_title(re.compile(r"^Frame 2 · "))

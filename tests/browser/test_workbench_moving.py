@@ -289,11 +289,3 @@ def test_paces_rise_gently(module_page: Page) -> None:
         "return [0, 1, 60, 61, 120, 121, 500].map(paceAfter);",
     )
     assert paces == [1, 1, 1, 2, 2, 4, 4]
-
-
-def test_a_right_click_far_away_says_by_how_much_and_how_to_take_it_back(bench: Callable[..., Bench]) -> None:
-    opened = bench(people=1).open()
-    opened.press("Tab")
-    far = opened.stored()[0].position + 160 * GRID.columns  # 4 m along Y
-    opened.click(best_view(far), far, button="right")
-    expect(opened.page.locator(".notices .notice")).to_contain_text("moved by 4.0 m – Ctrl + Z brings it back")

@@ -154,32 +154,3 @@ def corner(opened: Bench, view: int) -> dict[str, int]:
         )
     )
     return found
-
-
-def clicked_from_afar(bench: Callable[..., Bench], people: int = 3) -> Bench:
-    opened = bench(people=people, marked=False).open()
-    for person in range(people):
-        opened.click_ground(person)
-        expect(opened.page.locator(".people li")).to_have_count(person + 1)
-    opened.press("Escape")
-    return opened
-
-
-def test_whoever_was_clicked_from_afar_comes_close_up_in_the_round(bench: Callable[..., Bench]) -> None:
-    opened = clicked_from_afar(bench)
-    opened.press("a")
-    seen = set()
-    for _ in range(3):
-        seen.add(opened.selected())
-        assert zoomed(opened)
-        opened.press("Enter")
-    assert seen == {"1", "2", "3"}
-    assert not zoomed(opened)
-    expect(opened.page.locator(".notice").first).to_contain_text("Nobody is yellow")
-
-
-def test_going_on_without_a_close_look_is_said_once(bench: Callable[..., Bench]) -> None:
-    opened = clicked_from_afar(bench, people=2)
-    opened.press("n")
-    notice = opened.page.locator(".notice").first
-    expect(notice).to_contain_text("2 people of the frame before were only clicked from afar")

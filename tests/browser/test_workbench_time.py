@@ -370,27 +370,3 @@ def test_the_map_shows_the_path_of_the_selected_person(bench: Callable[..., Benc
     without = pixels(opened, marks)
     opened.press("Shift+W")
     assert until(lambda: pixels(opened, marks) > without, 10)
-
-
-def test_finish_counts_what_is_left_and_hands_the_batch_in(bench: Callable[..., Bench]) -> None:
-    """From the first frame on there is a button that says how much is left; it lists it, and hands in."""
-    opened = mark(bench(people=2, frames=3), 1, 2).open()
-    button = opened.page.locator('[data-action="finish"]')
-    expect(button).to_have_text("Finish · 3 frames left")
-    button.click()
-    dialog = opened.page.get_by_role("dialog")
-    expect(dialog).to_contain_text("3 frames are not finished yet")
-    dialog.get_by_role("button", name="Back to annotating").click()
-    opened.press("n")
-    at_frame(opened, 2)
-    expect(button).to_have_text("Finish · 2 frames left")
-    opened.press("n")
-    at_frame(opened, 3)
-    expect(button).to_have_text("Finish · 1 frame left")
-    opened.press("Control+Enter")  # the only frame left: asking says that it is done
-    expect(dialog).to_contain_text("All 3 frames are done")
-    expect(button).to_have_text("Finish ✓")
-    dialog.get_by_role("button", name="Submit").click()
-    opened.page.wait_for_url("**/work/*/")
-    opened.assignment.refresh_from_db()
-    assert opened.assignment.code is not None

@@ -70,18 +70,6 @@ export class Navigation {
     });
   }
 
-  /** What is left, and handing in; who has only this frame left has said so by asking. */
-  finish() {
-    return this._alone(async () => {
-      if (this.scene.mode !== "assignment") return this.notices.say(gettext("Only batches are handed in"));
-      const { current, numbers } = this.store;
-      const others = numbers.filter((number) => number !== current);
-      const last = others.every((number) => this.store.frame(number).done);
-      if (last && this.judging && !(await this._leaveForward())) return;
-      await this._finish();
-    });
-  }
-
   previous() {
     return this._alone(async () => {
       const previous = this.store.neighbour(-1);

@@ -66,7 +66,6 @@ export class TimeActions {
       lookNext: () => this.look(1),
       lookPrevious: () => this.look(-1),
       nextTask: () => this.goToNextTask(),
-      finish: () => this.navigation.finish(),
       pathsInViews: () => this.cyclePaths("pathsInViews"),
       pathsOnMap: () => this.cyclePaths("pathsOnMap"),
       filmstrip: () => this.settings.set("filmstrip", !this.settings.get("filmstrip")),

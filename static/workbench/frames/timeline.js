@@ -16,14 +16,13 @@ import { titleFor } from "../keys/keys.js";
 export class Timeline {
   /**
    * @param {object} parts
-   * @param {import("../../truth/scene.js").Scene} parts.scene
    * @param {import("../../truth/store.js").Store} parts.store
    * @param {import("../../saving/saver.js").Saver} parts.saver
    * @param {import("./navigation.js").Navigation} parts.navigation
    * @param {import("./playback.js").Playback} parts.playback
    * @param {Perform} parts.perform
    */
-  constructor({ scene, store, saver, navigation, playback, perform }) {
+  constructor({ store, saver, navigation, playback, perform }) {
     this.store = store;
     this.saver = saver;
     this.navigation = navigation;
@@ -38,8 +37,6 @@ export class Timeline {
     this._scrubbing = null; // the frame under the pointer
     this._play = this._button("play", "▶", perform);
     this._frames = this._line();
-    this._finish = this._button("finish", "", perform);
-    this._finish.hidden = scene.mode !== "assignment"; // nothing else is handed in
     this.element = this._build(perform);
     store.on("change", ({ frames }) => this._later(frames));
     store.on("frame", ({ before, after }) => this._later([before, after]));
@@ -60,16 +57,7 @@ export class Timeline {
       this._frames,
       this._button("filmstrip", gettext("Over time"), perform),
       this._button("nextTask", gettext("What is left"), perform),
-      this._finish,
     );
-  }
-
-  /** How many frames there are still to be done. */
-  _paintFinish() {
-    const left = this.store.numbers.filter((number) => !this.store.frame(number).done).length;
-    const words = left ? ngettext("Finish · {n} frame left", "Finish · {n} frames left", left) : gettext("Finish ✓");
-    setText(this._finish, words);
-    this._finish.classList.toggle("main", left === 0);
   }
 
   _line() {
@@ -190,7 +178,6 @@ export class Timeline {
     this._play.setAttribute("aria-pressed", String(playback.playing));
     this._frames.setAttribute("aria-valuenow", String(store.numbers.indexOf(store.current) + 1));
     this._frames.setAttribute("aria-valuetext", this._words(store.current, unsaved.has(store.current)));
-    if (!this._finish.hidden) this._paintFinish();
   }
 
   /** @param {Cell|undefined} cell @param {number} number @param {boolean} unsaved */

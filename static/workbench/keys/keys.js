@@ -18,12 +18,7 @@ const GROUPS = {
 
 /** @type {[id: string, group: Group, keys: string[], label: () => string][]} */
 const TABLE = [
-  [
-    "left",
-    "person",
-    ["ArrowLeft"],
-    () => gettext("one step to the left, as the active view shows it: 2.5 cm on most grids"),
-  ],
+  ["left", "person", ["ArrowLeft"], () => gettext("one step to the left, as the active view shows it")],
   ["right", "person", ["ArrowRight"], () => gettext("one step to the right")],
   ["up", "person", ["ArrowUp"], () => gettext("one step away from the camera")],
   ["down", "person", ["ArrowDown"], () => gettext("one step towards the camera")],
@@ -63,7 +58,6 @@ const TABLE = [
   ["copyNext", "frame", ["Shift+c"], () => gettext("copy a person exactly from the next frame")],
   ["fill", "frame", ["i"], () => gettext("fill in between the frames in which the person is validated")],
   ["nextTask", "frame", ["g"], () => gettext("go to what is left to do")],
-  ["finish", "frame", ["Ctrl+Enter"], () => gettext("finish: which frames are left, and hand in the batch")],
   ["play", "frame", ["k"], () => gettext("play the frames, and stop")],
   ["lookNext", "frame", [">"], () => gettext("look at the next frame, without saying anything about this one")],
   ["lookPrevious", "frame", ["<"], () => gettext("look at the previous frame")],
@@ -77,7 +71,7 @@ const TABLE = [
     ["1", "2", "3", "4", "5", "6", "7", "8", "9"],
     () => gettext("hide that view, or show it again"),
   ],
-  ["allViews", "view", ["0"], () => gettext("all views, each whole and of equal size")],
+  ["allViews", "view", ["0"], () => gettext("all views, alike")],
   ["views", "view", ["u"], () => gettext("which views are shown, brightness and contrast of each")],
   ["outline", "view", ["t"], () => gettext("show the border of the ground area")],
   ["grid", "view", ["Shift+t"], () => gettext("show a grid of metres on the ground")],

@@ -1,12 +1,11 @@
 import { fetched } from "../../base/lazy.js";
-import { gettext, ngettext } from "../../base/messages.js";
+import { gettext } from "../../base/messages.js";
 import { carriedOf } from "../../truth/annotation.js";
 import { keyFor } from "../keys/keys.js";
-import { isYellow } from "./queue.js";
 
 /**
- * Going round the yellow people one by one, close up, and round those who were clicked from afar: Enter for who
- * stands right, one right click on the feet for who does not, and the views show the next one. After the last one they show everything again, for people
+ * Going round the yellow people one by one, close up: Enter for who stands right, one right click on the feet for
+ * who does not, and the views show the next one. After the last one they show everything again, for people
  * without a box; whoever is placed then is shown close up, too.
  * @typedef {typeof import("./whois.js")} WhoIsPart
  */
@@ -20,7 +19,6 @@ export class OneByOne {
    * @param {import("../../base/notices.js").Notices} parts.notices
    * @param {import("../frames/navigation.js").Navigation} parts.navigation
    * @param {import("./queue.js").Queue} parts.queue
-   * @param {import("./close_looks.js").CloseLooks} parts.closeLooks
    * @param {import("../placing/dragging.js").Dragging} parts.dragging
    * @param {import("../placing/heads.js").Heads} parts.heads
    * @param {import("../annotating_intents.js").AnnotatingIntents} parts.intents
@@ -35,7 +33,6 @@ export class OneByOne {
     notices,
     navigation,
     queue,
-    closeLooks,
     dragging,
     heads,
     intents,
@@ -47,8 +44,6 @@ export class OneByOne {
     this._notices = notices;
     this._navigation = navigation;
     this._queue = queue;
-    this._closeLooks = closeLooks;
-    this._nudged = false; // once on a visit is enough
     this._dragging = dragging;
     this._heads = heads;
     this._people = people;
@@ -100,10 +95,9 @@ export class OneByOne {
     if (!this._selectNext()) this._showEverything();
   }
 
-  /** @returns {boolean} whether somebody is to be looked at */
+  /** @returns {boolean} whether somebody is yellow */
   _selectNext() {
-    const after = this._store.selection ?? this._passed.at(-1) ?? null;
-    const next = this._queue.next(after, (one) => isYellow(one) || this._closeLooks.waits(one.person));
+    const next = this._queue.next(this._store.selection ?? this._passed.at(-1) ?? null);
     if (next) this._store.select(next.person);
     return next !== undefined;
   }
@@ -132,24 +126,9 @@ export class OneByOne {
     this._panes.zoom(true);
   }
 
-  /** @param {number} waiting people of the frame before whom nobody saw close up */
-  _nudge(waiting) {
-    if (this._nudged) return;
-    this._nudged = true;
-    const words = ngettext(
-      "{n} person of the frame before was only clicked from afar: {back} goes back, {round} shows them close up",
-      "{n} people of the frame before were only clicked from afar: {back} goes back, {round} shows them close up",
-      waiting,
-      { back: keyFor("previousFrame"), round: keyFor("round") },
-    );
-    this._notices.say(words);
-  }
-
   async _nextFrame() {
     const before = this._store.current;
-    const waiting = this._closeLooks.count;
     await this._navigation.next();
-    if (this._store.current !== before && waiting) this._nudge(waiting);
     if (!this.on || this._store.current === before) return;
     if (!carriedOf(this._store.people()).length) return this._showEverything();
     this._store.select(null); // from the first one on, whoever was looked at last

@@ -127,18 +127,8 @@ export class PeoplePanel {
       row.selected = selected;
       row.node.setAttribute("aria-selected", String(selected));
       if (selected) this._list.setAttribute("aria-activedescendant", row.node.id);
-      if (selected) this._reveal(row.node);
+      if (selected) row.node.scrollIntoView({ block: "nearest" });
     }
-  }
-
-  /**
-   * By scrolling the list alone: what stands above it stays in sight.
-   * @param {HTMLElement} node
-   */
-  _reveal(node) {
-    const [list, row] = [this._list.getBoundingClientRect(), node.getBoundingClientRect()];
-    if (row.top < list.top) this._list.scrollTop += row.top - list.top;
-    else if (row.bottom > list.bottom) this._list.scrollTop += row.bottom - list.bottom;
   }
 
   _describe() {

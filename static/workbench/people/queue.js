@@ -18,15 +18,14 @@ export class Queue {
   }
 
   /**
-   * The next person after `person`, or from the beginning (null), who is wanted: yellow, unless said otherwise.
-   * @param {number|null} person @param {(one: Annotation) => boolean} wanted
-   * @returns {Annotation|undefined} undefined: there is nobody
+   * The next yellow person after `person`, or from the beginning (null); undefined when nobody is yellow.
+   * @param {number|null} person @returns {Annotation|undefined}
    */
-  next(person, wanted = isYellow) {
+  next(person) {
     this._extend();
     const start = person === null ? 0 : this._order.indexOf(person) + 1;
     const inTurn = [...this._order.slice(start), ...this._order.slice(0, start)];
-    return inTurn.map((one) => this._store.person(one)).find((one) => one && wanted(one));
+    return inTurn.map((one) => this._store.person(one)).find((one) => one?.state === CARRIED);
   }
 
   /** Whoever is new comes after the others, nearest first. */
@@ -55,9 +54,4 @@ export class Queue {
     };
     return persons.reduce((best, one) => (away(one) < away(best) ? one : best));
   }
-}
-
-/** @param {Annotation} one */
-export function isYellow({ state }) {
-  return state === CARRIED;
 }

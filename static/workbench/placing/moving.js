@@ -7,7 +7,6 @@ import { keyFor } from "../keys/keys.js";
 import { DIRECTIONS } from "./directions.js";
 
 const FAR = 10; // positions a step with Shift goes
-const JUMP = 3; // metres that nobody moves by unnoticed
 
 /**
  * Placing people and moving them, by click and by arrow key.
@@ -84,20 +83,7 @@ export class Moving {
     if (!person || position === null || !this.moveTo(person, position, event)) return false;
     this.ghost.hide();
     this.multiViewClick.begin(pane, this.heads.pixel(pane, at, person));
-    this._sayFar(person, position);
     return true;
-  }
-
-  /**
-   * Somebody jumped: perhaps only a menu was expected.
-   * @param {Annotation} person as before @param {number} position
-   */
-  _sayFar({ person, position: before }, position) {
-    const [from, to] = [this.scene.metres(before), this.scene.metres(position)];
-    const metres = Math.hypot(to.x - from.x, to.y - from.y);
-    if (metres <= JUMP) return;
-    const words = { person, metres: metres.toFixed(1), key: keyFor("undo") };
-    this.guard.say(null, gettext("Person {person} moved by {metres} m – {key} brings it back", words));
   }
 
   /**

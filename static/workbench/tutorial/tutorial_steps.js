@@ -70,6 +70,9 @@ export function whatMatters() {
     gettext("Feet are within 15 cm, looked at in two views."),
     gettext("One person keeps one number in all frames."),
     gettext("Nobody is left yellow, and no box is empty."),
-    gettext("{help} shows every key. “Finish”, at the bottom right, hands in your work.", { help: keyFor("help") }),
+    gettext("{help} shows every key. After the last frame, {on} hands in your work.", {
+      help: keyFor("help"),
+      on: keyFor("nextFrame"),
+    }),
   ];
 }
