@@ -25,7 +25,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "workbench/frames": {"base", "truth", "saving", "views", "workbench/keys"},
     "workbench/warnings": {"base", "truth", "views"},
     "workbench/comments": {"base", "truth", "views"},
-    "workbench/tutorial": {"base", "views", "workbench/keys"},
+    "workbench/tutorial": {"base", "truth", "views", "workbench/keys"},
     "compare": {"base", "tables", "truth", "views"},
     "review": {"base", "compare", "tables", "truth", "views"},
     "conflicts": {"base"},

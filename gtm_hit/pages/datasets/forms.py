@@ -157,7 +157,7 @@ class DatasetForm(SceneForm):
 
     def keep_archive(self) -> None:
         """Of a form refused for something else: what took an hour to send need not be sent again."""
-        if not self.cleaned_data.get("archive") or "archive" in self.errors:
+        if not self.is_bound or "archive" in self.errors or not self.cleaned_data.get("archive"):
             return
         self.kept = self.archive_source()
         if self.kept:
